@@ -180,7 +180,7 @@ def _in_spans(strip: Strip, few: Touch, wall: str, tolerance: float) -> Strip:
         off = np.tensordot(basis(knots, DEGREE, at), net, axes=1) - few.above(own, at)
         return np.max(length(off), axis=1) / tolerance
 
-    return replace(strip, knots=_reached(refined(strip.knots, miss, MOST_POLES[1]), miss, "span", [wall]))
+    return replace(strip, knots=_reached(strip.knots, miss, "span", [wall]))
 
 
 def _around(
@@ -219,9 +219,7 @@ def _around(
                 error = np.max([error, *_unlike(mine, touch, strip, carried)], axis=0)
         return np.max(error.reshape(len(faces), -1), axis=0)
 
-    return first.with_knots(
-        face, _reached(refined(first.knots_of[face], miss, MOST_POLES[0]), miss, "chord", list(balls))
-    )
+    return first.with_knots(face, _reached(first.knots_of[face], miss, "chord", list(balls)))
 
 
 def _ends_at_corners(touch: Touch, faces: list[int]) -> list[tuple[int, float, Reals]]:
@@ -260,7 +258,7 @@ def _about(pivot: Pivot, wall: str, plain: Reals, off_wall: float) -> Reals:
 
     planes = {p: pivot.planes(p) for p in (0.0, 1.0) if pivot.circular}
     first = knots_with_joints(clamped(QUARTERS), DEGREE, joints)
-    return _reached(refined(first, miss, MOST_POLES[0]), miss, "chord", [wall])
+    return _reached(first, miss, "chord", [wall])
 
 
 def _tilt(along: Reals, planes: Reals) -> float:
@@ -289,8 +287,18 @@ def _unlike(mine: Touch, theirs: Touch, strip: Strip, carried: Callable[..., Arr
     return [length(cross(*planes)) / (RESERVE * AT_JOINTS), off_side / (RESERVE * AT_JOINTS)]
 
 
-def _reached(knots: Reals, miss: Callable[[Reals, Reals], Reals], along: str, walls: Sequence[str]) -> Reals:
-    """The knots; raises DesignError where the limits are not held on them."""
+def _reached(first: Reals, miss: Callable[[Reals, Reals], Reals], along: str, walls: Sequence[str]) -> Reals:
+    """Knots refined from the first ones; raises DesignError where the limits are not held on them."""
+    held: list[Reals] = []
+
+    def seen(knots: Reals, at: Reals) -> Reals:
+        errors = miss(knots, at)
+        held[:] = [knots] if np.all(errors < 1.0) else []
+        return errors
+
+    knots = refined(first, seen, MOST_POLES[along == "span"])
+    if held:
+        return held[0]
     spans = np.unique(knots)
     places = (spans[1:] + spans[:-1]) / 2.0
     error = RESERVE * miss(knots, places)

@@ -109,6 +109,11 @@ class Touch(FrozenRecord):
         """How lines of the blade leave the fillet."""
         return leaving(self.section, self.found, self.slope, self._rise)
 
+    @cached_property
+    def lines_at_corners(self) -> Leaving:
+        """The same at the corners of the section."""
+        return replace(self, found=self.corners).lines
+
     @property
     def _rise(self) -> Array:
         """dv/du (k,) of the contacts, where the section has corners."""
@@ -121,8 +126,7 @@ class Touch(FrozenRecord):
         """How the lines of a strip run."""
         if not self.section.corners:
             return strip.course(self.found.sites, self.lines)
-        at_corners = replace(self, found=self.corners).lines
-        return strip.course(self.found.sites, self.lines, at_corners, self.corners.sites)
+        return strip.course(self.found.sites, self.lines, self.lines_at_corners, self.corners.sites)
 
     def above(self, strip: Strip, w: Reals) -> Array:
         """Points (len(w), k, 3) of the strip above the fillet, w from 0 at the fillet to 1 at the side."""

@@ -130,7 +130,7 @@ class StepsTouch(Touch):
     def course(self, strip: Strip) -> Course:
         if not self.section.corners:
             return super().course(strip)
-        lines, at_corners = self._by_blade(self.lines), self._by_blade(replace(self, found=self.corners).lines)
+        lines, at_corners = self._by_blade(self.lines), self._by_blade(self.lines_at_corners)
         sites, corner_sites = (_of_one(found.sites, self.count) for found in (self.found, self.corners))
         course = strip.course(sites, lines, at_corners, corner_sites)
         return Course(**{each.name: np.ravel(getattr(course, each.name)) for each in fields(course)})
