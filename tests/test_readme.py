@@ -81,6 +81,7 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         (tmp_path / f"{name}.toml").write_text(example_text(name))
     (tmp_path / "rotor.csv").write_text(blocks(ROOT / "docs" / "design.md", "csv")[0])
     (tmp_path / "study.toml").write_text(blocks(ROOT / "docs" / "sweeps.md", "toml study")[0])
+    (tmp_path / "search.toml").write_text(blocks(ROOT / "docs" / "searches.md", "toml search")[0])
     (tmp_path / "vane.cfg").write_text(blocks(ROOT / "docs" / "import.md", "ini")[0])
     return tmp_path
 

@@ -114,6 +114,10 @@ from .section.thickness.wennerstrom import Wennerstrom as Wennerstrom
 from .section.unified import UnifiedSection as UnifiedSection
 from .section.wedge_diffuser import WedgeDiffuser as WedgeDiffuser
 from .section.wedge_diffuser import WedgeDiffuserSection as WedgeDiffuserSection
+from .studies.openmdao import openmdao_component as openmdao_component
+from .studies.optimise import optimise as optimise
+from .studies.optimum import Optimum as Optimum
+from .studies.pareto import ParetoSet as ParetoSet
 from .studies.runs import Runs as Runs
 from .studies.sweep import sweep as sweep
 

@@ -11,6 +11,7 @@ from bladewright.cli.fit import fit
 from bladewright.cli.import_design import import_design
 from bladewright.cli.mesh import mesh
 from bladewright.cli.new import new
+from bladewright.cli.optimise import optimise
 from bladewright.cli.options import Call, common
 from bladewright.cli.outcome import INTERRUPTED, Outcome, one_paragraph, print_outcome
 from bladewright.cli.schema import schema
@@ -51,7 +52,7 @@ def program(context: click.Context) -> None:
         click.echo(context.get_help())
 
 
-for each in (build, verify, fit, import_design, mesh, show, sensitivity, sweep, new, schema):
+for each in (build, verify, fit, import_design, mesh, show, sensitivity, sweep, optimise, new, schema):
     program.add_command(each)
 
 

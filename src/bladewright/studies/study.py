@@ -17,6 +17,7 @@ from bladewright.errors import FileError, StudyError
 from bladewright.files.examples import examples
 from bladewright.files.reading import design_from, parsed, read_design
 from bladewright.files.text import read_text
+from bladewright.studies.goals import Constraint, Objective, SearchOptions
 from bladewright.studies.manifest import read_manifest
 from bladewright.studies.operating_points import OperatingPoint, polar_figures
 from bladewright.studies.quantities import Quantity, quantities_of
@@ -57,7 +58,7 @@ class _File:
     designs: dict[str, str] | None = None
     variables: dict[str, Range] = field(default_factory=dict)
     sweep: SweepOptions = field(default_factory=SweepOptions)
-    optimise: dict[str, Any] | None = None
+    optimise: SearchOptions | None = None
     polars: dict[str, OperatingPoint] = field(default_factory=dict)
 
 
@@ -73,9 +74,9 @@ class Study:
     """by name; that of the design itself where there is one"""
     ranges: Mapping[str, Range]
     """what is varied, by path or pattern"""
-    sweep: SweepOptions
+    sweep: SweepOptions = field(default_factory=SweepOptions)
     """how a sweep samples"""
-    optimise: Mapping[str, Any] | None
+    optimise: SearchOptions | None = None
     """how a search searches"""
     polars: Mapping[str, OperatingPoint] = field(default_factory=dict)
     """flows around sections, by name"""
@@ -170,8 +171,16 @@ def _messages(error: ValidationError) -> list[str]:
 
 def _unknown_key(loc: tuple[int | str, ...]) -> str:
     *table, key = loc
-    kinds: dict[str, Any] = {"sweep": SweepOptions, "variables": Range, "polars": OperatingPoint}
-    known = list(kinds.get(str(table[0]), _File).__dataclass_fields__ if table else _File.__dataclass_fields__)
+    kinds: dict[str, Any] = {
+        "sweep": SweepOptions,
+        "variables": Range,
+        "polars": OperatingPoint,
+        "optimise": SearchOptions,
+        "objectives": Objective,
+        "constraints": Constraint,
+    }
+    kind = next((kinds[word] for word in reversed(table) if word in kinds), _File)
+    known = list(kind.__dataclass_fields__)
     near = get_close_matches(str(key), known, n=1, cutoff=0.5)
     hint = f"did you mean '{near[0]}'?" if near else f"known are {', '.join(known)}"
     return f"{_path(loc)} does not exist; {hint}"

@@ -63,7 +63,8 @@ def sweep(
     records.
     """
     designs: dict[str, Any] = dict(design) if isinstance(design, Mapping) else {str(cast("Any", design).name): design}
-    ranges = {name: _range(name, given) for name, given in variables.items()} if isinstance(variables, Mapping) else {}
+    given = variables if isinstance(variables, Mapping) else {}
+    ranges = {name: range_of(name, each) for name, each in given.items()}
     table = None if isinstance(variables, Mapping) else os.path.abspath(variables)  # noqa: PTH100 - of a text
     options = SweepOptions(
         sampling=sampling, samples=samples, seed=seed, table=table, files=tuple(files), time_limit=time_limit
@@ -177,8 +178,8 @@ def _header(study: Study, asked: Sequence[str | Callable[..., Any]]) -> dict[str
         "name": study.name,
         "folder": str(study.folder.absolute()),
         "designs": {name: text_of(design) for name, design in study.designs.items()},
-        "variables": {name: _given(each) for name, each in study.ranges.items()},
-        "polars": {name: _given(each) for name, each in study.polars.items()},
+        "variables": {name: given_keys(each) for name, each in study.ranges.items()},
+        "polars": {name: given_keys(each) for name, each in study.polars.items()},
         "sweep": {
             "sampling": study.sweep.sampling,
             **({"samples": study.sweep.samples, "seed": study.sweep.seed} if random else {}),
@@ -189,12 +190,12 @@ def _header(study: Study, asked: Sequence[str | Callable[..., Any]]) -> dict[str
     }
 
 
-def _given(given: Range | OperatingPoint) -> dict[str, Any]:
+def given_keys(given: Range | OperatingPoint) -> dict[str, Any]:
     """The keys of a table that are not left out."""
     return {each.name: asdict(given)[each.name] for each in fields(given) if getattr(given, each.name) != each.default}
 
 
-def _range(name: str, given: Given) -> Range:
+def range_of(name: str, given: Given) -> Range:
     """The range that a pair, a list or a table stands for."""
     if isinstance(given, Range):
         return given

@@ -14,6 +14,8 @@ from bladewright.views.fit_deviations import draw_outline_deviation
 from bladewright.views.fit_sheet import fit_sheet
 from bladewright.views.html import Rows, frame, image, table, with_headings
 from bladewright.views.masses import mass_rows
+from bladewright.views.optimum import optimum_figure, optimum_rows
+from bladewright.views.pareto import front_figure, front_rows
 from bladewright.views.passage import draw_section_passage, figures, section_figures
 from bladewright.views.picture import sheet
 from bladewright.views.round_trip import round_trip_figure, round_trip_tables
@@ -193,6 +195,18 @@ KINDS: Mapping[str, Kind] = {
         picture=lambda trip: image(round_trip_figure(trip.to_dict()), "deviations"),
         tables=lambda trip: round_trip_tables(trip.to_dict()),
         title=lambda trip: (trip.file, f"round trip, {_verdict(trip)}"),
+    ),
+    "optimum": Kind(
+        figure=optimum_figure,
+        picture=lambda found: image(optimum_figure(found), "search"),
+        tables=lambda found: table(optimum_rows(found), ("", "start", "found")),
+        title=lambda found: (found.name, f"optimum, {_verdict(found)}"),
+    ),
+    "pareto": Kind(
+        figure=lambda found: front_figure([found]),
+        picture=lambda found: image(front_figure([found]), "front"),
+        tables=lambda found: table(front_rows(found), ("", "lowest", "highest")),
+        title=lambda found: (found.name, f"Pareto set of {len(found.members)} designs"),
     ),
     "runs": Kind(
         figure=parallel_coordinates,
