@@ -339,6 +339,7 @@ class Search:
             "folder": str(self.study.folder.absolute()),
             "designs": {name: text_of(design) for name, design in self.study.designs.items()},
             "variables": {name: given_keys(each) for name, each in self.study.ranges.items()},
+            "polars": {name: given_keys(each) for name, each in self.study.polars.items()},
             "optimise": {**asdict(self.options), "method": self.method},
             **({"pymoo": pymoo_version()} if self.method == "nsga2" else {}),
         }

@@ -11,7 +11,7 @@ from bladewright.derivatives.complex_step import built, stepped
 from bladewright.derivatives.net_jacobian import Bars, pullback
 from bladewright.derivatives.sensitivity import differentiated
 from bladewright.designs import Design, value_at
-from bladewright.errors import StudyError
+from bladewright.errors import DerivativeError, StudyError
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 from bladewright.studies.adjoint import Adjoint
@@ -146,7 +146,12 @@ class Problem:
         direct = [each for each in concerned if not isinstance(each, Adjoint)]
         if not (paths and direct):
             return found
-        rates = differentiated(design, base, self._stacked(direct, name, x), paths, stepped(design, base, paths))
+        try:
+            rates = differentiated(design, base, self._stacked(direct, name, x), paths, stepped(design, base, paths))
+        except DerivativeError as error:
+            asked = ", ".join(each.name for each in direct)
+            cure = 'a figure of a solver needs its adjoint, or a search with method = "nsga2"'
+            raise DerivativeError(f"{asked}: {error}; {cure}") from error
         names = [figure for each in direct for figure in figures(self._value(each, x), each.name)]
         for place, figure in enumerate(names):
             found[figure] = {path: rate[place] for path, rate in rates.items()}
