@@ -212,3 +212,39 @@ def test_a_run_that_stops_its_process_has_failed_and_the_others_go_on(study_file
     assert stopped == low
     assert Counter(runs.verdicts) == {"built": 8 - len(low), "failed": len(low)}
     assert low
+
+
+STUBBORN = """
+def stubborn(section):
+    while section.stagger < -0.57:
+        try:
+            while True: pass
+        except BaseException: pass
+    return 1.0
+"""
+
+
+@pytest.mark.slow
+def test_a_run_that_ignores_its_limit_is_stopped_with_its_process(study_file):
+    (study_file.parent / "figures.py").write_text(STUBBORN)
+    study = read_study(study_file)
+    plan = planned(replace(study, sweep=replace(study.sweep, time_limit=3.0)), quantities=["figures:stubborn"])
+    runs = plan.carried_out(None, jobs=2)
+    stopped = [run for run, reason in runs.reasons.items() if "ignored its limit of 3 s" in reason]
+    assert len(stopped) == Counter(runs.verdicts)["failed"] > 0
+    assert Counter(runs.verdicts)["built"] == 8 - len(stopped)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="SIGINT is of Unix")
+def test_an_interrupted_sweep_says_how_to_go_on(study_file):
+    (study_file.parent / "figures.py").write_text("import time\ndef slow(section):\n    time.sleep(60)\n")
+    study_file.write_text(study_file.read_text().replace('"area"', '"area", "figures:slow"'))
+    command = [sys.executable, "-m", "bladewright", "sweep", study_file.name, "--jobs", "1"]
+    process = subprocess.Popen(command, cwd=study_file.parent, stdout=subprocess.PIPE, text=True)
+    while process.poll() is None and not study_file.with_suffix(".jsonl").exists():
+        time.sleep(0.01)
+    time.sleep(0.2)
+    process.send_signal(signal.SIGINT)
+    out, _ = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert out == "interrupted: 0 of 8 runs have ended and are in 'vane-study.jsonl'; the same command goes on\n"

@@ -45,9 +45,10 @@ def progress(steps: int, call: Call, *, time_left: bool = False) -> Iterator[Bar
 
     from tqdm import tqdm
 
-    # a terminal may say that it has no columns, and tqdm would draw none
+    # a terminal may say that it has no columns or lines, and tqdm would draw nothing
+    size = get_terminal_size()
     form = "{desc}: {bar} {n_fmt}/{total_fmt}" + (", {remaining} left" if time_left else "")
-    layout: dict[str, Any] = {"ncols": get_terminal_size().columns, "bar_format": form}
+    layout: dict[str, Any] = {"ncols": size.columns, "nrows": size.lines, "bar_format": form}
     with tqdm(total=steps, file=sys.stderr, leave=False, **layout) as bar:
         yield bar
 

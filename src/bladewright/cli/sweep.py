@@ -1,7 +1,7 @@
 """`bladewright sweep`: many designs side by side, every run kept as it ends."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -87,8 +87,8 @@ def sweep(
     with _writing(table_file, *pictures.values()):
         try:
             runs = _carried_out(plan, manifest, call, jobs=jobs, scheduler=scheduler, retry=retry)
-        except KeyboardInterrupt as error:
-            raise KeyboardInterrupt(f"what has ended is in '{manifest}', and the same command goes on") from error
+        except KeyboardInterrupt:
+            return _interrupted(manifest, plan.total)
         if table_file is not None:
             runs.to_csv(table_file)
         drawn = _drawn(runs, pictures)
@@ -114,6 +114,14 @@ def _carried_out(plan: "Plan", manifest: Path, call: Call, **options: Any) -> "R
             bar.initial = bar.n = done
 
         return plan.carried_out(manifest, progress=lambda _: bar.update(1), begun=begin, **options)
+
+
+def _interrupted(manifest: Path, total: int) -> Outcome:
+    from bladewright.studies.manifest import read_manifest
+
+    ended = sum(1 for _ in read_manifest(manifest)[1]) if manifest.is_file() else 0
+    text = f"interrupted: {ended} of {total} runs have ended and are in '{manifest}'; the same command goes on"
+    return Outcome(data={"manifest": str(manifest), "runs": ended, "interrupted": True}, text=text, interrupted=True)
 
 
 def _drawn(runs: "Runs", pictures: dict[str, Path | None]) -> list[Path]:
@@ -145,15 +153,13 @@ def _failures(runs: "Runs") -> tuple[str, ...]:
 @contextmanager
 def _writing(table: Path | None, *pictures: Path | None) -> Iterator[None]:
     """A context in which the files that are wanted can be written; FileError, before any work, where not."""
-    from contextlib import ExitStack
-
-    from bladewright.views.pages import checked_path
-
+    wanted = [path for path in pictures if path is not None]
     with ExitStack() as stack:
-        for path in (table, *pictures):
-            if path is not None:
-                stack.enter_context(removing_partial_files(path.parent, [path.name]))
-        for path in pictures:
-            if path is not None:
+        for path in [*([table] if table else []), *wanted]:
+            stack.enter_context(removing_partial_files(path.parent, [path.name]))
+        if wanted:
+            from bladewright.views.pages import checked_path
+
+            for path in wanted:
                 checked_path(path)
         yield
