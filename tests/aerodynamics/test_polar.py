@@ -1,9 +1,13 @@
 """Polars by the real XFOIL: the published figures, references, marches and what goes wrong."""
 
+import pickle
+
 import numpy as np
 import pytest
 
 import bladewright as bw
+from bladewright.errors import PolarError
+from bladewright.views.polar import draw_polar
 
 from .conftest import NACA_23012
 
@@ -44,3 +48,82 @@ def test_a_reference_length_of_one_metre_gives_the_figures_of_table_16():
     by_chord = bw.polar(section, 2.0394e6 * 0.245, 4.0)
     assert found.cl[0] == pytest.approx(by_chord.cl[0] * 0.245, rel=1e-12)
     assert np.sum(found.segments(4.0).lift_pressure) == pytest.approx(found.cl[0], abs=1e-4)
+
+
+@pytest.mark.usefixtures("xfoil")
+def test_an_angle_that_does_not_converge_is_named_and_the_others_stay(section):
+    found = bw.polar(section, 3.5e6, [4.0, 60.0], iterations=30)
+    assert list(found.converged) == [True, False]
+    assert found.failures == ("alpha 60: XFOIL did not converge in 30 iterations, with 160 or 200 panels",)
+    with pytest.raises(PolarError, match=r"alpha is 60 deg: XFOIL 6\.99 did not converge there"):
+        found.flow(60.0)
+    with pytest.raises(PolarError, match="none of the polar's 2 angles"):
+        found.flow(5.0)
+
+
+@pytest.mark.usefixtures("xfoil")
+def test_what_was_done_by_the_time_limit_is_kept(section):
+    found = bw.polar(section, 3.5e6, np.linspace(-5.0, 15.0, 900), time_limit=0.5)
+    assert 0 < np.count_nonzero(found.converged) < 900
+    assert found.failures[-1].startswith("alpha 15: XFOIL was stopped at the time limit of 0.5 s")
+
+
+@pytest.mark.usefixtures("xfoil")
+def test_a_compressible_flow_has_more_lift_and_forced_transition_more_drag(polar, section):
+    fast = bw.polar(section, 3.5e6, 0.0, mach=0.4)
+    assert fast.cl[0] > 1.03 * polar.cl[1]
+    tripped = bw.polar(section, 3.5e6, 0.0, transition=(0.1, 0.2))
+    assert tripped.cd[0] > 1.3 * polar.cd[1]
+    assert (tripped.transition_upper[0], tripped.transition_lower[0]) == pytest.approx((0.1, 0.2), abs=1e-3)
+
+
+def test_moments_about_two_points_differ_by_the_normal_force(xfoil, polar, section):  # noqa: ARG001
+    behind = bw.polar(section, 3.5e6, 4.0, moment_point=0.5)
+    angle = np.radians(4.0)
+    flow, nodes = polar.segments(4.0), polar.flow(4.0)
+    normal = np.sum(flow.lift_pressure) * np.cos(angle) + np.sum(flow.drag_pressure) * np.sin(angle)
+    assert behind.cm[0] - polar.cm[-1] == pytest.approx(0.25 * normal, abs=2e-5)
+    assert nodes.alpha == 4.0
+
+
+def test_cuts_out_of_order_are_refused(polar):
+    for cuts in ((0.7, 0.3), (0.0, 0.5), (0.3,)):
+        with pytest.raises(PolarError, match="two numbers x/c between 0 and 1"):
+            polar.segments(4.0, cuts)
+
+
+def test_segments_of_other_cuts_have_the_same_sum(polar):
+    for name in ("lift_pressure", "drag_friction"):
+        sums = [np.sum(getattr(polar.segments(4.0, cuts), name)) for cuts in ((0.3, 0.7), (0.1, 0.55))]
+        assert sums[0] == pytest.approx(sums[1], rel=1e-3)
+
+
+def test_table_and_dictionary_have_every_angle(polar, tmp_path):
+    polar.to_csv(tmp_path / "polar.csv")
+    rows = (tmp_path / "polar.csv").read_text().splitlines()
+    assert rows[0] == "alpha,cl,cd,cdp,cm,transition_upper,transition_lower"
+    assert [float(each) for each in rows[3].split(",")] == [
+        float(getattr(polar, name)[2]) for name in rows[0].split(",")
+    ]
+    assert polar.to_dict()["cl"] == list(polar.cl)
+    assert len(str(polar).splitlines()) == 2 + 3
+    assert pickle.loads(pickle.dumps(polar)).cl[2] == polar.cl[2]
+
+
+def test_a_neural_network_is_near_xfoil_and_says_what_it_is(polar, section):
+    pytest.importorskip("neuralfoil", reason="NeuralFoil is not installed: pip install 'bladewright[polar]'")
+    quick = bw.polar(section, 3.5e6, polar.alpha, solver="neuralfoil")
+    np.testing.assert_allclose(quick.cl, polar.cl, atol=0.03)
+    np.testing.assert_allclose(quick.cd, polar.cd, rtol=0.1)
+    assert "neural network trained on XFOIL" in quick.remarks[-1]
+    with pytest.raises(PolarError, match="gives no cp and cf; take solver='xfoil'"):
+        quick.segments(4.0)
+
+
+def test_a_picture_has_four_curves_pressure_and_friction(polar, tmp_path):
+    titles = [axes.get_title(loc="left") for axes in polar.plot().axes]
+    assert titles[:4] == ["Lift", "Drag", "Moment", "Lift over drag"]
+    assert {"Pressure, XFOIL 6.99", "Skin friction"} <= set(titles)
+    draw_polar([polar, polar], tmp_path / "polar.svg", [4.0])
+    assert (tmp_path / "polar.svg").stat().st_size > 10_000
+    assert "best cl / cd" in polar._repr_html_()

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
+from bladewright.aerodynamics.surface_flow import CUTS
 from bladewright.errors import PolarError
 from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import frozen
@@ -36,6 +37,8 @@ class Airfoil(FrozenRecord):
     """[m]"""
     nose: tuple[float, float] = (0.0, 0.0)
     """where the upper side meets the lower [chords]"""
+    cuts: tuple[float, float] = CUTS
+    """x/c at which each side is parted in leading edge, central box and trailing edge"""
     name: str = "airfoil"
     remarks: tuple[str, ...] = ()
     """what a polar of it must say: that it is one of a cascade, what was cut off"""
@@ -79,6 +82,7 @@ def airfoil_of(section: Section) -> Airfoil:
         points=np.concatenate([upper[::-1], lower]),
         chord=chord,
         nose=(float(upper[0, 0]), float(upper[0, 1])),
+        cuts=_cuts(section),
         name=section.name,
         remarks=tuple(remarks),
     )
@@ -128,6 +132,15 @@ def _cut(section: Section, to_chords: Callable[[ArrayLike], Reals], curve: Curve
         return float((to_chords(curve(np.array([u])))[0] - line[1]) @ along) + radius
 
     return 1.0 if ahead(0.5) > 0.0 or ahead(1.0) <= 0.0 else float(brentq(ahead, 0.5, 1.0))
+
+
+def _cuts(section: Section) -> tuple[float, float]:
+    """x/c of the cuts of a segmented airfoil, or the common ones."""
+    places = None if section.outline is None else section.outline.cuts
+    if section.outline is None or places is None:
+        return CUTS
+    front, rear = np.real(section.outline.points(np.array(places))[0]).reshape(2, 2)[:, 0]
+    return float(front), float(rear)
 
 
 def _of_a_cascade(section: Section) -> str:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from bladewright.aerodynamics.airfoil import Airfoil, airfoil_of
 from bladewright.aerodynamics.conditions import Conditions
 from bladewright.aerodynamics.neuralfoil import neuralfoil_columns
-from bladewright.aerodynamics.surface_flow import CUTS, Segments, SurfaceFlow
+from bladewright.aerodynamics.surface_flow import Segments, SurfaceFlow
 from bladewright.aerodynamics.xfoil import xfoil_points
 from bladewright.atomic_write import atomic_write
 from bladewright.display import Shown
@@ -103,13 +103,14 @@ class Polar(FrozenRecord, Shown):
             raise PolarError(f"alpha is {alpha:g} deg: {self.solver} {why}")
         return found
 
-    def segments(self, alpha: float, cuts: Sequence[float] = CUTS) -> Segments:
+    def segments(self, alpha: float, cuts: Sequence[float] | None = None) -> Segments:
         """Lift and drag of each part of the outline between two cuts x/c and the nose, at an angle of the polar [deg].
 
-        They are by the reference length. Raises PolarError where there is no cp, or where cuts are out of order.
+        Where no cuts are given they are those of a segmented airfoil, or 0.3 and 0.7. Figures are by the reference
+        length. Raises PolarError where there is no cp, or where cuts are out of order.
         """
         share = self.airfoil.chord / self.reference_length
-        return self.flow(alpha).segments(self.airfoil.nose, cuts).scaled(share)
+        return self.flow(alpha).segments(self.airfoil.nose, cuts or self.airfoil.cuts).scaled(share)
 
     def to_dict(self) -> dict[str, object]:
         """Conditions and columns, for JSON."""
@@ -181,6 +182,11 @@ def polar(
     >>> section = bw.read_design("naca-23012.toml").build()  # doctest: +SKIP
     >>> bw.polar(section, 3.5e6, [0.0, 4.0]).lift_to_drag  # doctest: +SKIP
     """
+    if not isinstance(airfoil, Airfoil | Section):
+        raise PolarError(
+            f"a polar is asked of {type(airfoil).__name__}: give a section, such as design.build() of a 2D design or "
+            "blade.section(0.5), or Airfoil(points=...)"
+        )
     subject = airfoil if isinstance(airfoil, Airfoil) else airfoil_of(airfoil)
     length = subject.chord if reference_length is None else reference_length
     if not 0.0 < length < np.inf:
@@ -198,11 +204,11 @@ def polar(
         time_limit=time_limit,
     )
     if solver == "xfoil":
-        name, points, failures = xfoil_points(subject, angles, conditions)
+        name, points, failures, panelled = xfoil_points(subject, angles, conditions)
         rows = [NONE if p is None else (p.cl, p.cd, p.cdp, p.cm, *p.transition) for p in points]
         columns = dict(zip(COLUMNS[1:], np.transpose(rows), strict=True))
         flows = tuple(None if point is None else point.flow for point in points)
-        remarks = subject.remarks
+        remarks = (*subject.remarks, *panelled)
     elif solver == "neuralfoil":
         name, columns, accuracy = neuralfoil_columns(subject, angles, conditions)
         flows, failures, remarks = (None,) * len(angles), [], (*subject.remarks, accuracy)

@@ -18,7 +18,8 @@ SOURCE = "void _gfortran_set_fpe(int flags) { (void)flags; }\n"
 """The library: what gfortran calls to arm the traps does nothing."""
 COMPILERS = ("cc", "gcc", "clang")
 """Names of C compilers that take -shared, in the order in which they are looked for."""
-WRAPPER = "or set BLADEWRIGHT_XFOIL to an XFOIL that does not trap, or to a script that starts one (see docs/polars.md)"
+NAMED = "BLADEWRIGHT_XFOIL to an XFOIL that does not trap, or to a script that starts one (see docs/polars.md)"
+"""What the variable is to be set to."""
 
 
 def library() -> Path:
@@ -44,12 +45,12 @@ def build_library() -> None:
     """Compile the library; raises PolarError where that cannot be done here."""
     trapped = "XFOIL stopped at a floating-point trap, as Debian's and Ubuntu's build does in every viscous case"
     if not sys.platform.startswith("linux"):
-        raise PolarError(f"{trapped}: set BLADEWRIGHT_XFOIL to an XFOIL that does not trap")
+        raise PolarError(f"{trapped}: set {NAMED}")
     compiler = next(filter(None, map(shutil.which, COMPILERS)), None)
     if compiler is None:
         raise PolarError(
             f"{trapped}; a library of one line cures it, which is built on first use, but there is no C compiler here: "
-            f"install one (apt-get install gcc), {WRAPPER}"
+            f"install one (apt-get install gcc), or set {NAMED}"
         )
     place = library()
     try:
@@ -64,5 +65,5 @@ def build_library() -> None:
     except (OSError, subprocess.CalledProcessError) as error:
         reason = str(getattr(error, "stderr", "") or error).strip()
         raise PolarError(
-            f"{trapped}; the library of one line that cures it cannot be built as '{place}': {reason}; {WRAPPER}"
+            f"{trapped}; the library of one line that cures it cannot be built as '{place}': {reason}; or set {NAMED}"
         ) from error

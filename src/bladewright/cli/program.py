@@ -14,6 +14,7 @@ from bladewright.cli.new import new
 from bladewright.cli.optimise import optimise
 from bladewright.cli.options import Call, common
 from bladewright.cli.outcome import INTERRUPTED, Outcome, one_paragraph, print_outcome
+from bladewright.cli.polar import polar
 from bladewright.cli.schema import schema
 from bladewright.cli.sensitivity import sensitivity
 from bladewright.cli.show import show
@@ -52,7 +53,7 @@ def program(context: click.Context) -> None:
         click.echo(context.get_help())
 
 
-for each in (build, verify, fit, import_design, mesh, show, sensitivity, sweep, optimise, new, schema):
+for each in (build, verify, fit, import_design, mesh, show, sensitivity, polar, sweep, optimise, new, schema):
     program.add_command(each)
 
 

@@ -97,6 +97,11 @@ class Outline(ABC):
         """Whether the camber line ends where the chord line does; a morph may move edges off (0, 0) and (1, 0)."""
         return True
 
+    @property
+    def cuts(self) -> tuple[float, float] | None:
+        """s of the two cuts that part each side in leading edge, central box and trailing edge; None: not parted."""
+        return None
+
     @abstractmethod
     def points(self, s: Reals) -> tuple[Array, Array]:
         """Points (..., len(s), 2) of the upper and the lower side at s (k,) in [0, 1]."""

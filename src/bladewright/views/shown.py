@@ -18,6 +18,7 @@ from bladewright.views.optimum import optimum_figure, optimum_rows
 from bladewright.views.pareto import front_figure, front_rows
 from bladewright.views.passage import draw_section_passage, figures, section_figures
 from bladewright.views.picture import sheet
+from bladewright.views.polar import polar_figure, polar_table
 from bladewright.views.round_trip import round_trip_figure, round_trip_tables
 from bladewright.views.runs import parallel_coordinates, run_rows
 from bladewright.views.sections import draw_neighbour
@@ -189,6 +190,12 @@ KINDS: Mapping[str, Kind] = {
         tables=_fit_tables,
         title=lambda fit: (fit.design.name, f"fit, {_verdict(fit)}"),
         unit=lambda fit: fit.design.length_unit,
+    ),
+    "polar": Kind(
+        figure=polar_figure,
+        picture=lambda polar: image(polar_figure(polar), "polar"),
+        tables=polar_table,
+        title=lambda polar: (polar.name, "polar of the lone airfoil"),
     ),
     "round trip": Kind(
         figure=lambda trip: round_trip_figure(trip.to_dict()),
