@@ -1,13 +1,10 @@
 """Polars by the real XFOIL: the published figures, references, marches and what goes wrong."""
 
-import pickle
-
 import numpy as np
 import pytest
 
 import bladewright as bw
 from bladewright.errors import PolarError
-from bladewright.views.polar import draw_polar
 
 from .conftest import NACA_23012
 
@@ -98,18 +95,6 @@ def test_segments_of_other_cuts_have_the_same_sum(polar):
         assert sums[0] == pytest.approx(sums[1], rel=1e-3)
 
 
-def test_table_and_dictionary_have_every_angle(polar, tmp_path):
-    polar.to_csv(tmp_path / "polar.csv")
-    rows = (tmp_path / "polar.csv").read_text().splitlines()
-    assert rows[0] == "alpha,cl,cd,cdp,cm,transition_upper,transition_lower"
-    assert [float(each) for each in rows[3].split(",")] == [
-        float(getattr(polar, name)[2]) for name in rows[0].split(",")
-    ]
-    assert polar.to_dict()["cl"] == list(polar.cl)
-    assert len(str(polar).splitlines()) == 2 + 3
-    assert pickle.loads(pickle.dumps(polar)).cl[2] == polar.cl[2]
-
-
 def test_a_neural_network_is_near_xfoil_and_says_what_it_is(polar, section):
     pytest.importorskip("neuralfoil", reason="NeuralFoil is not installed: pip install 'bladewright[polar]'")
     quick = bw.polar(section, 3.5e6, polar.alpha, solver="neuralfoil")
@@ -118,12 +103,3 @@ def test_a_neural_network_is_near_xfoil_and_says_what_it_is(polar, section):
     assert "neural network trained on XFOIL" in quick.remarks[-1]
     with pytest.raises(PolarError, match="gives no cp and cf; take solver='xfoil'"):
         quick.segments(4.0)
-
-
-def test_a_picture_has_four_curves_pressure_and_friction(polar, tmp_path):
-    titles = [axes.get_title(loc="left") for axes in polar.plot().axes]
-    assert titles[:4] == ["Lift", "Drag", "Moment", "Lift over drag"]
-    assert {"Pressure, XFOIL 6.99", "Skin friction"} <= set(titles)
-    draw_polar([polar, polar], tmp_path / "polar.svg", [4.0])
-    assert (tmp_path / "polar.svg").stat().st_size > 10_000
-    assert "best cl / cd" in polar._repr_html_()

@@ -7,8 +7,7 @@ import pytest
 
 from bladewright.aerodynamics.xfoil_output import read_polar_dump
 from bladewright.errors import PolarError
-
-from .conftest import DUMP
+from machines.polars import DUMP
 
 
 @pytest.fixture(scope="module")

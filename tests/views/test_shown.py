@@ -25,6 +25,7 @@ from machines import COARSE, built
 from machines.coarse import BLADES
 from machines.fits import made
 from machines.passages import passage_case
+from machines.polars import recorded_polar
 from machines.sectioned import DESIGNS
 from machines.unified import VANE
 
@@ -41,6 +42,7 @@ SHOWN = {
     "passage": lambda: passage_case("plate with faces at both edges").passage,
     "section": lambda: built(VANE),
     "section passage": lambda: section_passage(built(VANE), 0.05),
+    "polar": recorded_polar,
     "fit": lambda: made("linear"),
     "fit of a section": lambda: made("section"),
     "runs": lambda: sweep(VANE, {"stagger": (-52.0, -48.0)}, ["area", "chord"], samples=6, jobs=1),
