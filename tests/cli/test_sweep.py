@@ -5,6 +5,8 @@ import json
 import pytest
 
 from bladewright.files.examples import example_text
+from bladewright.files.reading import read_design
+from bladewright.studies.run import record_of
 
 STUDY = """
 design = "turbine-section.toml"
@@ -27,6 +29,7 @@ def study(tmp_path, monkeypatch):
 
 
 def test_a_sweep_prints_figures_and_writes_manifest_table_and_pictures(run, study):
+    study.write_text(STUDY.replace('["throat", "area"]', '["throat"]'))  # few panels, which draw fast
     pictures = ["--parallel", "p.png", "--scatter", "s.svg", "--effects", "e.pdf"]
     found = run("sweep", "study.toml", "--jobs", "1", "--csv", "out/runs.csv", *pictures)
     assert (found.status, found.err) == (0, "")
@@ -56,6 +59,31 @@ def test_runs_come_from_a_table_and_files_are_verified(run, study):
     assert found.status == 0
     assert "2 runs: 1 verified, 1 refused" in found.out
     assert [path.name for path in (study.parent / "study").iterdir()] == ["turbine-section-0001.step"]
+
+
+def test_the_design_of_a_run_is_one_command_from_its_files(run, study):
+    run("sweep", "study.toml", "--jobs", "1")
+    lines = [json.loads(line) for line in (study.parent / "study.jsonl").read_text().splitlines()[1:]]
+    for path in ("study.toml", "study.jsonl"):
+        found = run("sweep", path, "--member", "3", "-d", "out")
+        assert (found.status, found.out) == (0, "wrote out/turbine-section-0003.toml\n")
+    design = read_design("out/turbine-section-0003.toml")
+    assert {"stagger": design.stagger, "pitch": design.pitch} == lines[2]["parameters"]
+    assert "no run 7 in 'study.jsonl'" in run("sweep", "study.toml", "--member", "7").err
+
+
+def test_an_interrupted_sweep_says_how_to_go_on(run, study, monkeypatch):
+    def stopped(experiment, number, parameters):
+        if number == 3:
+            raise KeyboardInterrupt
+        return record_of(experiment, number, parameters)
+
+    monkeypatch.setattr("bladewright.studies.workers.record_of", stopped)
+    found = run("sweep", "study.toml", "--jobs", "1")
+    assert (found.status, found.out) == (130, "")
+    told = "interrupted: what has ended is in 'study.jsonl', and the same command goes on"
+    assert found.err.strip() == f"bladewright: {told}"
+    assert len((study.parent / "study.jsonl").read_text().splitlines()) == 3
 
 
 FUNCTIONS = """

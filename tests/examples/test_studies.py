@@ -16,6 +16,7 @@ SAYS = {"throat-sweep": "128 built", "naca-23012-polar": "upper leading edge"}
 NEEDS_XFOIL = ("naca-23012-polar",)
 
 
+@pytest.mark.slow  # three pictures with thirty panels
 @pytest.mark.parametrize("name", LEFT)
 def test_a_study_asserts_its_number_and_leaves_its_files(name, tmp_path, monkeypatch, capsys):
     if name in NEEDS_XFOIL and shutil.which("xfoil") is None:

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -22,6 +23,7 @@ from bladewright.studies.sampling import SAMPLINGS, count, read_table
 from bladewright.studies.study import read_study
 from bladewright.studies.sweep import planned, sweep
 from bladewright.studies.variables import Range, resolved
+from bladewright.studies.workers import Processes
 
 RANGES = {
     "stagger": (-33.0, -29.0),
@@ -114,7 +116,10 @@ def mean_radius(section):
     return section.perimeter / (2.0 * np.pi)
 
 
-def test_several_processes_give_the_same_records_and_a_manifest_repeats_them(study_file, tmp_path):
+@pytest.mark.parametrize("kind", ["threads", pytest.param("processes", marks=pytest.mark.slow)])
+def test_several_workers_give_the_same_records_and_a_manifest_repeats_them(kind, study_file, tmp_path, monkeypatch):
+    if kind == "threads":  # which start at once
+        monkeypatch.setattr(Processes, "_started", lambda self: ThreadPoolExecutor(self._count))
     plan = planned(read_study(study_file))
     first, second, again = (tmp_path / f"{name}.jsonl" for name in ("first", "second", "again"))
     plan.carried_out(first, jobs=1)
@@ -180,12 +185,6 @@ def assert_none_lost_or_doubled(manifest: Path) -> None:
     assert len(manifest.read_bytes().splitlines()) == 151
 
 
-@pytest.mark.skipif(os.name == "nt", reason="SIGKILL is of Unix")
-def test_a_killed_sweep_goes_on_and_loses_nothing(study_file):
-    manifest = killed_and_continued(study_file.parent, [0.05])
-    assert_none_lost_or_doubled(manifest)
-
-
 @pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="SIGKILL is of Unix")
 def test_a_sweep_killed_ten_times_loses_nothing(study_file):
@@ -234,18 +233,3 @@ def test_a_run_that_ignores_its_limit_is_stopped_with_its_process(study_file):
     stopped = [run for run, reason in runs.reasons.items() if "ignored its limit of 1 s" in reason]
     assert len(stopped) == Counter(runs.verdicts)["failed"] > 0
     assert Counter(runs.verdicts)["built"] == 8 - len(stopped)
-
-
-@pytest.mark.skipif(os.name == "nt", reason="SIGINT is of Unix")
-def test_an_interrupted_sweep_says_how_to_go_on(study_file):
-    (study_file.parent / "figures.py").write_text("import time\ndef slow(section):\n    time.sleep(60)\n")
-    study_file.write_text(study_file.read_text().replace('"area"', '"area", "figures:slow"'))
-    command = [sys.executable, "-m", "bladewright", "sweep", study_file.name, "--jobs", "1"]
-    process = subprocess.Popen(command, cwd=study_file.parent, stdout=subprocess.PIPE, text=True)
-    while process.poll() is None and not study_file.with_suffix(".jsonl").exists():
-        time.sleep(0.01)
-    time.sleep(0.2)
-    process.send_signal(signal.SIGINT)
-    out, _ = process.communicate(timeout=60)
-    assert process.returncode == 130
-    assert out == "interrupted: 0 of 8 runs have ended and are in 'vane-study.jsonl'; the same command goes on\n"

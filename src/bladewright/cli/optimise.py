@@ -2,18 +2,17 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
-from bladewright.cli.build_files import SUFFIXES, BuildOptions, build_files
+from bladewright.cli.build_files import SUFFIXES
+from bladewright.cli.members import member_designs, written_designs
 from bladewright.cli.options import Call, comma_separated, common
 from bladewright.cli.outcome import Outcome
 from bladewright.cli.progress import progress, status_line
-from bladewright.errors import StudyError
 
 if TYPE_CHECKING:
-    from bladewright.designs import Design
     from bladewright.studies.optimise import Search
     from bladewright.studies.optimum import Optimum
     from bladewright.studies.pareto import ParetoSet
@@ -80,7 +79,8 @@ def optimise(
     if member is not None:
         if picture or parallel or table_file:
             raise click.UsageError("--member writes one design: leave the table and the pictures to the search itself")
-        return _files_of(_member(path, manifest, member), f"{member:04d}", directory, formats, call)
+        designs = member_designs(study.designs, study.variables, manifest, member)
+        return written_designs(designs, f"{member:04d}", directory, formats, call)
     search = Search(study)
     if search.single:
         with status_line(call) as show:
@@ -101,7 +101,7 @@ def _optimum(
     found: "Optimum", call: Call, directory: Path, formats: tuple[str, ...] | None, picture: Path | None
 ) -> Outcome:
     """The optimum's design, files and picture."""
-    files = _files_of(found.designs, "optimum", directory, formats, call)
+    files = written_designs(found.designs, "optimum", directory, formats, call)
     written = [*files.data["written"]]
     if picture is not None:
         from bladewright.views.optimum import draw_optimum
@@ -157,66 +157,6 @@ def _nearest(found: "ParetoSet") -> str:
         return "none could be built and measured; the manifest says why"
     number, limit, excess = near
     return f"run {number} comes nearest and misses the limit of {limit.figure} by {100.0 * excess:.3g} %; widen it"
-
-
-def _member(study: Path, manifest: Path, member: int) -> "Mapping[str, Design]":
-    """The designs of a run of a manifest, by name."""
-    from bladewright.studies.manifest import read_manifest
-    from bladewright.studies.study import read_study
-    from bladewright.studies.variables import changed_designs
-
-    own = read_study(study)
-    for record in read_manifest(manifest)[1]:
-        if record.run == member:
-            if not record.good:
-                raise StudyError(f"run {member} of '{manifest}' was {record.verdict}: {record.reason}")
-            return changed_designs(own.designs, own.variables, record.parameters)
-    raise StudyError(
-        f"there is no run {member} in '{manifest}': the search has not come to it, or name the manifest -o"
-    )
-
-
-def _files_of(
-    designs: "Mapping[str, Design]", word: str, directory: Path, formats: tuple[str, ...] | None, call: Call
-) -> Outcome:
-    """Write designs under names that end in a word, and their CAD files where formats are given."""
-    from bladewright.files.writing import write_design
-
-    outcomes, written, failures = [], [], list[str]()
-    directory.mkdir(parents=True, exist_ok=True)
-    for design in designs.values():
-        named: Any = design.changed("name", f"{design.name}-{word}")  # type: ignore[attr-defined]
-        file = directory / f"{named.name}.toml"
-        write_design(named, file)
-        written.append(str(file))
-        if formats:
-            options = BuildOptions(
-                directory=directory,
-                formats=formats,
-                bodies=("blade",),
-                schema="AP242",
-                iges_surfaces=False,
-                chordal_deviation=None,
-                stations=None,
-                unit="mm",
-                colour="parts",
-                force=True,
-                extend=0.0,
-                fine=False,
-                split=False,
-                changes={},
-                extents={},
-            )
-            with progress(options.steps, call) as bar:
-                outcomes.append(build_files(file, options, bar))
-    failures = [each for outcome in outcomes for each in outcome.failures]
-    return Outcome(
-        data={"cad": [outcome.data for outcome in outcomes], "written": written},
-        text="\n".join(
-            [*(outcome.text for outcome in outcomes), *([] if formats else [f"wrote {x}" for x in written])]
-        ),
-        failures=tuple(failures),
-    )
 
 
 def _line(search: "Search", figures: Mapping[str, float]) -> str:

@@ -65,7 +65,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         outcome = program.main(words, prog_name="bladewright", standalone_mode=False, obj=call)
         return print_outcome(outcome, call) if isinstance(outcome, Outcome) else int(outcome or 0)
     except (KeyboardInterrupt, click.Abort) as error:
-        return _refused(call, error, "Interrupted", f"interrupted {error}".strip(), INTERRUPTED)
+        told = str(error.__cause__ or error)  # click's own error leaves out what was told
+        return _refused(call, error, "Interrupted", f"interrupted: {told}" if told else "interrupted", INTERRUPTED)
     except click.ClickException as error:
         return _refused(call, error, "UsageError", _with_help(error))
     except (BladewrightError, MemoryError) as error:

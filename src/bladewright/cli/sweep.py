@@ -10,6 +10,7 @@ import click
 
 from bladewright.cli.build_files import SUFFIXES
 from bladewright.cli.directory import removing_partial_files
+from bladewright.cli.members import member_designs, written_designs
 from bladewright.cli.options import Call, comma_separated, common
 from bladewright.cli.outcome import Outcome
 from bladewright.cli.progress import progress
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
 )
 @click.option("--jobs", type=click.IntRange(1, 4096), metavar="N", help="Processes.  [as many as processors]")
 @click.option("--scheduler", metavar="ADDRESS", help="A Dask cluster in their place, such as tcp://10.0.0.7:8786.")
+@click.option("--member", type=click.IntRange(1), metavar="RUN", help="Write the design of this run of the manifest.")
 @click.option("--retry", is_flag=True, help="Repeat the runs that have failed.")
 @click.option("--csv", "table_file", type=click.Path(path_type=Path), metavar="FILE", help="Write the runs as CSV.")
 @click.option(
@@ -56,6 +58,7 @@ def sweep(
     directory: Path | None,
     jobs: int | None,
     scheduler: str | None,
+    member: int | None,
     retry: bool,
     table_file: Path | None,
     parallel: Path | None,
@@ -66,7 +69,8 @@ def sweep(
 
     Every run is a line of the manifest as soon as it has ended: its parameters, its figures, and whether it was built,
     verified, refused or has failed, and why. A sweep that was stopped goes on where the same command is given again.
-    STUDY may be such a manifest, which is then repeated, and has all of its runs again.
+    STUDY may be such a manifest, which is then repeated. --member 12 --as step writes the design of run 12 as
+    DESIGN-0012.toml, and as verified CAD files.
 
     The exit status is 1 where runs have failed, or none was built; designs that are refused do not fail.
     """
@@ -76,7 +80,7 @@ def sweep(
     if jobs is not None and scheduler is not None:
         raise click.UsageError("--jobs are processes of this machine, --scheduler is a cluster: leave one out")
     pictures = {"parallel": parallel, "scatter": scatter, "effects": effects}
-    manifest = output or _manifest_of(path)
+    manifest = output or _manifest_of(path, is_read=member is not None)
     study = read_study(path)
     options = study.sweep
     if table is not None:
@@ -84,11 +88,14 @@ def sweep(
     if formats is not None:
         options = replace(options, files=formats)
     plan = planned(replace(study, sweep=options), directory=directory or manifest.with_suffix(""))
+    if member is not None:
+        designs = member_designs(plan.experiment.designs, plan.experiment.variables, manifest, member)
+        return written_designs(designs, f"{member:04d}", directory or Path(), formats, call)
     with _writing(table_file, *pictures.values()):
         try:
             runs = _carried_out(plan, manifest, call, jobs=jobs, scheduler=scheduler, retry=retry)
-        except KeyboardInterrupt:
-            return _interrupted(manifest, plan.total)
+        except KeyboardInterrupt as error:
+            raise KeyboardInterrupt(f"what has ended is in '{manifest}', and the same command goes on") from error
         if table_file is not None:
             runs.to_csv(table_file)
         drawn = _drawn(runs, pictures)
@@ -100,7 +107,10 @@ def sweep(
     )
 
 
-def _manifest_of(path: Path) -> Path:
+def _manifest_of(path: Path, *, is_read: bool) -> Path:
+    """The manifest of a study that is not told where to keep its runs."""
+    if path.suffix == ".jsonl" and is_read:
+        return path
     if path.suffix == ".jsonl":
         raise click.UsageError(f"'{path}' is a manifest, which is repeated into another one: name it with -o")
     return Path(f"{path.stem}.jsonl")
@@ -114,14 +124,6 @@ def _carried_out(plan: "Plan", manifest: Path, call: Call, **options: Any) -> "R
             bar.initial = bar.n = done
 
         return plan.carried_out(manifest, progress=lambda _: bar.update(1), begun=begin, **options)
-
-
-def _interrupted(manifest: Path, total: int) -> Outcome:
-    from bladewright.studies.manifest import read_manifest
-
-    ended = sum(1 for _ in read_manifest(manifest)[1]) if manifest.is_file() else 0
-    text = f"interrupted: {ended} of {total} runs have ended and are in '{manifest}'; the same command goes on"
-    return Outcome(data={"manifest": str(manifest), "runs": ended, "interrupted": True}, text=text, interrupted=True)
 
 
 def _drawn(runs: "Runs", pictures: dict[str, Path | None]) -> list[Path]:
