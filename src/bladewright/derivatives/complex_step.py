@@ -1,13 +1,12 @@
 """What a design builds while a parameter carries a complex step, or changes a little: nets, blades, any build.
 
-A blade's control nets are linear in the points of its sections. A law of evolution of the unified family acts on the
-section at span fraction v by its value there alone: a step of the whole law gives the derivative of the section, and
-the derivative by its control point j, or its value at station j, is the weight of that number at v times it, so that
-one rebuild serves all numbers of a law. The other parameters, those of the channel above all and every parameter of a
-blade from sections, are stepped one by one; AT_ONCE steps go through one rebuild as a batch.
+A blade's control nets are linear in the points of its sections. Most laws of evolution act on the section at span
+fraction v by their value there alone: a step of the whole law gives the derivative of the section, and the derivative
+by its control point j, or its value at station j, is the weight of that number at v times it, so that one rebuild
+serves all numbers of a law. The other parameters, those of the channel above all, are stepped one by one; AT_ONCE steps
+go through one rebuild as a batch.
 """
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -64,7 +63,8 @@ def side_tangents(blade: Blade, paths: Sequence[str]) -> Iterator[Nets]:
 
     In metres per unit of the parameter's field, at the blade's knots.
     """
-    sources = [law_point(blade.design, path) for path in paths]
+    laws = blade.design.local_laws()
+    sources = [law_point(path, laws) for path in paths]
     steps = list(dict.fromkeys(source.step for source in sources))
     rates = np.concatenate([_rates_of_steps(blade, steps[i : i + AT_ONCE]) for i in range(0, len(steps), AT_ONCE)])
     mirrored = [edge is None for edge in blade.exact.survey.lower_edges()]
@@ -75,15 +75,12 @@ def side_tangents(blade: Blade, paths: Sequence[str]) -> Iterator[Nets]:
         yield sides_through(data_from_rates(rows, mirrored), blade.knots)
 
 
-def law_point(design: RowDesign, path: str) -> LawPoint:
-    """What is stepped for the derivative of a design by one of its parameters."""
-    name, *places = re.findall(r"\w+", path)
-    if name not in (*design.local_laws, *design.local_chordwise_laws):
-        return LawPoint(path)
-    law, step = getattr(design, name), name
-    if name in design.local_chordwise_laws:
-        law, step = law[int(places[0])], f"{name}[{places[0]}]"
-    return LawPoint(step, number_paths(law, step).index(path), law)
+def law_point(path: str, laws: Mapping[str, Law]) -> LawPoint:
+    """What is stepped for the derivative of a design with these local laws by one of its parameters."""
+    for step, law in laws.items():
+        if path == step or path.startswith((f"{step}[", f"{step}.values[")):
+            return LawPoint(step, number_paths(law, step).index(path), law)
+    return LawPoint(path)
 
 
 def _rates_of_steps(blade: Blade, steps: Sequence[str]) -> Array:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
@@ -86,10 +86,9 @@ class RowDesign(Design):
     organisation: str = ""
     """for the header of CAD files"""
 
-    local_laws: ClassVar[tuple[str, ...]] = ()
-    """fields whose laws shape the exact section at v by their values at v alone"""
-    local_chordwise_laws: ClassVar[tuple[str, ...]] = ()
-    """the same of fields that hold control points along the chord, each a law"""
+    def local_laws(self) -> Mapping[str, Law]:
+        """The laws, by path, that shape the exact section at v by their values at v alone."""
+        return {}
 
     def __post_init__(self) -> None:
         check_labels(self)

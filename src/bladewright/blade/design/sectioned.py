@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from bladewright.blade.design.flow_path import FlowPath, increasing_spans
 from bladewright.blade.design.meridional_curve import Meridian, meridian_at
-from bladewright.blade.design.row_design import RowDesign
+from bladewright.blade.design.row_design import FIELDS_OF, RowDesign
 from bladewright.blade.design.stacking import Stacking
 from bladewright.designs import Law, parameter
 from bladewright.errors import DesignError
@@ -64,6 +64,14 @@ class SectionedBlade(RowDesign):
     section to 1e-9 of the chord, as at hub, shroud and the flow path's stream surfaces it is [-]"""
     section: SectionFamily
     """the family's parameters, each a law along the span"""
+
+    def local_laws(self) -> Mapping[str, Law]:
+        """None where sections are ruled, cut, or placed without edge curves: then other sections matter too."""
+        if self.skinning != "sections" or self.leading_edge is None or self.ends != ("hub", "shroud"):
+            return {}
+        position = self.leading_edge_theta if self.arrangement == "annular" else self.leading_edge_y
+        found = {FIELDS_OF[self.arrangement][1]: 0.0 if position is None else position}
+        return found | {f"section.{path}": law for path, law in named_laws(self.section)}
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -76,8 +76,12 @@ class UnifiedBlade(RowDesign):
     clustering: float = 1.0
     """spacing of the samples: 0 uniform, 1 cosine towards both edges [-]"""
 
-    local_laws: ClassVar[tuple[str, ...]] = ("leading_edge_theta", "leading_edge_y", *ANGLES, *TANGENTS, *RADII)
-    local_chordwise_laws: ClassVar[tuple[str, ...]] = (*THICKNESSES, *WEIGHTS)
+    def local_laws(self) -> Mapping[str, Law]:
+        found = {
+            name: getattr(self, name) for name in ("leading_edge_theta", "leading_edge_y", *ANGLES, *TANGENTS, *RADII)
+        }
+        rows = {name: getattr(self, name) for name in (*THICKNESSES, *WEIGHTS)}
+        return found | {f"{name}[{i}]": law for name, row in rows.items() for i, law in enumerate(row)}
 
     def __post_init__(self) -> None:
         super().__post_init__()

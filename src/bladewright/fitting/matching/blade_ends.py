@@ -8,14 +8,11 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from bladewright.blade.exact.exact_blade import ExactBlade
-from bladewright.blade.exact.unified import ExactUnifiedBlade
 from bladewright.derivatives.complex_step import STEP
 from bladewright.fitting.matching.footpoints import Footpoints, footpoints_at
-from bladewright.fitting.models.law_jacobian import channel_shifts, stands_on_channel
 from bladewright.fitting.models.model import ModelShape
 from bladewright.numerics.robust import median_deviation
-from bladewright.nurbs.basis import Reals, basis
-from bladewright.section.checks import UNITS
+from bladewright.nurbs.basis import Reals
 
 ROW_BAND = 0.015
 """distance from an end, in v, within which a point may belong to the row that shows it."""
@@ -82,24 +79,12 @@ class WallPoints:
         t, normal, miss = self.misses(exact)
         return t, np.asarray(np.sum(normal * miss, axis=-1))
 
-    def basis(self, exact: ExactUnifiedBlade, t: Reals) -> Reals:
-        """Basis functions (m, n) of the channel's curve at parameters (m,)."""
-        line = exact.channel.curve(self.name)
-        return np.asarray(basis(line.knots, line.degree, t))
-
     def rates(self, shape: ModelShape, t: Reals, paths: Sequence[str]) -> Reals:
         """Derivatives (m, k, 2) of the places on the curve at held parameters."""
         found = np.zeros((len(t), len(paths), 2))
         exact = shape.exact
         moving = [i for i, path in enumerate(paths) if path.startswith(("channel.", "flow_path.", "tip_", "hub_"))]
         if not moving or exact is None:
-            return found
-        if stands_on_channel(shape.design):
-            rows, metre = self.basis(exact, t), UNITS[shape.design.length_unit]
-            for i in moving:
-                for curve, place, axis in channel_shifts(shape.design, paths[i]):
-                    if curve == self.name:
-                        found[:, i, axis] = metre * rows[:, place]
             return found
         values = shape.design.parameters()
         kicks = 1j * STEP * np.eye(len(moving))

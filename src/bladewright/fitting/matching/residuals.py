@@ -1,7 +1,7 @@
 """The least-squares problem of a match: residuals in chords and their derivatives by the scaled parameters."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,7 +12,6 @@ from bladewright.fitting.matching.edge_overhang import EdgeOverhang
 from bladewright.fitting.matching.footpoints import Footpoints, concatenated, nearest_footpoints
 from bladewright.fitting.matching.regularisation import Regularisation
 from bladewright.fitting.matching.scales import Scales
-from bladewright.fitting.models.law_jacobian import LawJacobian, law_jacobian
 from bladewright.fitting.models.model import Model, ModelShape
 from bladewright.numerics.least_squares import ConstrainedProblem
 from bladewright.nurbs.basis import Reals
@@ -72,24 +71,6 @@ class CloudResiduals:
                 moving = wall.rates(shape, t, paths)
                 blocks.append(-self._of_wall(wall) * np.einsum("nkd,nd->nk", moving, normal))
         return np.concatenate([*blocks, edges]) / chord
-
-    def jacobian(self, state: PlacedCloud, paths: Sequence[str]) -> LawJacobian:
-        """How the residuals (m,) of a blade of the unified family move with whole laws and channel points."""
-        shape, chord = state.shape, self.model.chord
-        footpoints, directions = self.places(state)
-        jacobian = law_jacobian(shape.exact, self.model.knots, footpoints, directions / chord, paths)  # type: ignore[attr-defined]
-        count, before = len(jacobian.sites), len(footpoints.u) - len(self.overhang.u)
-        misses = {name: (wall, *wall.misses(shape.exact)) for name, wall in self.ends.walls.items()}
-        moves = {}
-        for step, rows in jacobian.moves.items():
-            parts = [rows[:before]]
-            for name, (wall, t, normal, _) in misses.items():
-                rate = np.zeros(len(t))
-                if step[0] == name and not isinstance(step, str):
-                    rate = -self._of_wall(wall) * wall.basis(shape.exact, t)[:, step[1]] * normal[:, step[2]] / chord
-                parts.append(np.tile(rate[:, None] / count, (1, count)))
-            moves[step] = np.concatenate([*parts, rows[before:]])
-        return replace(jacobian, moves=moves)
 
     def places(self, state: PlacedCloud) -> tuple[Footpoints, Reals]:
         """The footpoints whose motion changes residuals, and the directions (n, d) that count.

@@ -12,15 +12,7 @@ from bladewright.blade.native.blade import Blade, side_surface
 from bladewright.blade.native.interpolation import native_sides
 from bladewright.blade.native.knots import DEGREE, Knots
 from bladewright.blade.native.refinement import mean_chord, refined_knots
-from bladewright.derivatives.complex_step import STEP, side_tangents, stepped_design
-from bladewright.fitting.matching.footpoints import Footpoints
-from bladewright.fitting.models.law_jacobian import (
-    channel_shifts,
-    law_jacobian,
-    law_shares,
-    shifted_channel,
-    stands_on_channel,
-)
+from bladewright.derivatives.complex_step import STEP, law_point, side_tangents, stepped_design
 from bladewright.fitting.models.model import Model, ModelShape, complex_steps, model_of
 from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array, concatenated, cross2, length
@@ -120,27 +112,17 @@ class BladeModel(Model):
         upper, lower = (np.concatenate([pair[side] for pair in pairs]) for side in (0, 1))
         return upper, lower
 
-    def along(self, shape: ModelShape, footpoints: Footpoints, directions: Reals, paths: Sequence[str]) -> Reals:
-        """From the motion with whole laws."""
-        return law_jacobian(shape.exact, self.knots, footpoints, directions, paths).columns(paths)
-
     def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """By the laws only: by the channel they vanish but for the walls' slopes, which are left out."""
         found = np.zeros((len(paths), *shape.edge_radius_margins.shape))
-        laws = [place for place, path in enumerate(paths) if not path.startswith(("channel.", "tip_", "hub_"))]
-        parts = [next(law_shares(shape.design, paths[place], RADIUS_STATIONS)) for place in laws]
-        steps = list(dict.fromkeys(step for step, _ in parts))
-        plane = (
-            shape.exact.moved_to(stepped_design(shape.design, [str(step) for step in steps]))
-            .sections(RADIUS_STATIONS)
-            .plane
-        )
-        rates = (
-            np.moveaxis(np.imag(_edge_radius_margins(shape.design, plane.camber, plane.upper, plane.lower)), 1, 0)
-            / STEP
-        )
-        for place, (step, share) in zip(laws, parts, strict=True):
-            found[place] = rates[steps.index(step)] * share
+        design, laws = shape.design, shape.design.local_laws()
+        own = [(place, law_point(path, laws)) for place, path in enumerate(paths)]
+        own = [(place, point) for place, point in own if point.law is not None]
+        steps = list(dict.fromkeys(point.step for _, point in own))
+        plane = shape.exact.moved_to(stepped_design(design, steps)).sections(RADIUS_STATIONS).plane
+        rates = np.imag(_edge_radius_margins(design, plane.camber, plane.upper, plane.lower)) / STEP
+        for place, point in own:
+            found[place] = rates[:, steps.index(point.step)] * point.factor(RADIUS_STATIONS)
         return found
 
     def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
@@ -148,15 +130,10 @@ class BladeModel(Model):
         found = np.zeros((len(paths), len(shape.constraints)))
         walls = [place for place, path in enumerate(paths) if path.startswith("channel.")]
         if walls and shape.exact is not None:
-            some = [paths[place] for place in walls]
-            if stands_on_channel(shape.design):
-                metre = UNITS[shape.design.length_unit]
-                channel = shifted_channel(shape.exact.channel, [channel_shifts(shape.design, path) for path in some])
-            else:
-                metre = 1.0
-                moved = shape.exact.moved_to(shape.design.changed(complex_steps(shape.design, some)))
-                channel = moved.channel
-            found[walls] = np.imag(_fold_margins(shape.exact, channel)) / STEP * metre
+            steps = complex_steps(shape.design, [paths[place] for place in walls])
+            found[walls] = (
+                np.imag(_fold_margins(shape.exact, shape.exact.moved_to(shape.design.changed(steps)).channel)) / STEP
+            )
         return found
 
 
