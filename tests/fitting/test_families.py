@@ -8,8 +8,7 @@ import pytest
 
 from bladewright.errors import FitError
 from bladewright.fitting.families.kinds import FAMILIES, family_of
-from bladewright.fitting.families.section_samples import sides_between_edges
-from bladewright.fitting.families.sections import section_samples
+from bladewright.fitting.families.section_shape import section_shape
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching.scales import scales_of
@@ -78,12 +77,16 @@ def test_the_derivatives_of_a_sections_sides_are_those_of_the_sides_built_with_a
 
 
 @pytest.mark.parametrize("name", sorted(set(SAMPLED)))
-def test_a_sections_samples_are_those_of_the_part_it_is_made_of(name):
-    section, design = section_samples(built(name)), MEMBERS[name]
-    assert section.chord == pytest.approx(design.chord * 1e-3, rel=1e-9)
-    started = family_of(design).starts(section, design.section)[0]
-    assert type(started) is type(design.section)
-    assert started.parameters().keys() == design.section.parameters().keys()
+def test_a_first_section_is_near_the_section_that_it_is_taken_from(name):
+    shape, design = section_shape(built(name)), MEMBERS[name]
+    assert shape.chord == pytest.approx(design.chord * 1e-3, rel=1e-9)
+    first = family_of(design).first_parts(shape, design.section)[0]
+    assert type(first) is type(design.section)
+    assert first.parameters().keys() == design.section.parameters().keys()
+    again = section_shape(type(design)(name="again", length_unit="mm", chord=design.chord, section=first).build())
+    places = np.linspace(0.05, 0.95, 19)
+    assert again.half(places) == pytest.approx(shape.half(places), abs=0.03)
+    assert again.camber(places) == pytest.approx(shape.camber(places), abs=0.03)
 
 
 @pytest.mark.parametrize("name", STARTED)
@@ -142,20 +145,3 @@ def test_a_sections_family_has_no_points_in_space():
     for name in FAMILIES:
         with pytest.raises(FitError, match="give x and y alone"):
             fit(points, family=f"{name}-section")
-
-
-def test_the_edge_of_a_thick_nose_is_in_the_middle_of_its_turn_wherever_its_sides_part():
-    turn = np.linspace(0.5 * np.pi, 1.5 * np.pi, 200)
-    nose = np.stack([0.1 + 0.1 * np.cos(turn), 0.1 * np.sin(turn)], axis=-1)
-    tail = np.stack([np.linspace(0.1, 1.0, 200), np.linspace(0.1, 0.0, 200)], axis=-1)
-    # the sides part 60 deg up the nose
-    cut = int(np.searchsorted(turn, np.pi - np.radians(60.0)))
-    upper = np.concatenate([nose[cut::-1], tail])
-    lower = np.concatenate([nose[cut:], tail * [1.0, -1.0]])
-    above, below, radii = sides_between_edges(upper, lower)
-    # within a step of the samples
-    assert above[0] == pytest.approx([0.0, 0.0], abs=0.01)
-    assert above[-1] == pytest.approx([1.0, 0.0], abs=0.01)
-    assert np.all(above[10:-10, 1] > 0.0)
-    assert np.all(below[10:-10, 1] < 0.0)
-    assert radii[0] == pytest.approx(0.1, rel=0.05)

@@ -9,7 +9,7 @@ import pytest
 from bladewright.errors import FitError
 from bladewright.fitting.families.flow_path import ChannelCurves
 from bladewright.fitting.families.laws import counts_of, part_along_span, with_mean_laws
-from bladewright.fitting.families.section_samples import reversed_flow, sampled_section
+from bladewright.fitting.families.section_shape import section_shape
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import FreeParameters, gauge_parameters, sliding_coordinate
 from bladewright.fitting.matching.scales import scales_of
@@ -89,15 +89,14 @@ def test_a_part_of_laws_is_made_again_from_its_sections_and_its_numbers_of_contr
 
 
 def test_a_section_for_the_flow_from_the_other_side_has_its_edges_exchanged_and_its_sides_kept():
-    built = COMPRESSOR.build().section(0.5)
-    section = sampled_section(built.curves["upper"], built.curves["lower"], (1e-3, 2e-3))
-    other = reversed_flow(section)
+    shape = section_shape(COMPRESSOR.build().section(0.5))
+    other = shape.reversed()
     assert np.all(np.interp(0.5, *other.upper.T) > np.interp(0.5, *other.lower.T))
-    assert other.radii == section.radii[::-1]
-    again = reversed_flow(other)
-    assert again.upper == pytest.approx(section.upper, abs=1e-15)
-    assert again.start == pytest.approx(section.start, abs=1e-15)
-    assert again.stagger == section.stagger
+    assert other.radii == shape.radii[::-1]
+    again = other.reversed()
+    assert again.upper == pytest.approx(shape.upper, abs=1e-15)
+    assert again.start == pytest.approx(shape.start, abs=1e-15)
+    assert again.stagger == shape.stagger
 
 
 def test_edges_of_another_kind_than_points_are_refused():

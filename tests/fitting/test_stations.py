@@ -6,13 +6,11 @@ import numpy as np
 import pytest
 
 import bladewright as bw
-from bladewright.errors import DesignError
-from bladewright.fitting.families.kinds import FAMILIES
-from bladewright.fitting.families.law_extension import law_extensions
 from bladewright.fitting.families.laws import with_stations_of
 from bladewright.fitting.model_selection.reshaping import reshaped
+from bladewright.fitting.model_selection.rich_structures import richest
 from bladewright.fitting.model_selection.structure import structure_of
-from bladewright.section.laws import named_laws, stations_of
+from bladewright.section.laws import law_points, named_laws, stations_of
 from machines import built
 from machines.stations import AXIAL, SPAN, TABLE, at_stations, moved
 
@@ -53,10 +51,8 @@ def test_a_like_design_says_which_laws_are_given_at_stations():
     assert other.thickness == part.thickness
 
 
-def test_a_law_at_stations_is_not_extended():
+def test_a_law_at_stations_keeps_them_where_other_laws_get_control_points():
     design = AXIAL["profile"]
-    ways = {each.law: each for each in law_extensions(design, FAMILIES["profile"])}
-    with pytest.raises(DesignError, match="given at stations, and none is added"):
-        ways["section.stagger_angle"].applied(design)
-    wider = ways["section.thickness"].applied(design)
+    wider = reshaped(design, richest(design))
     assert dict(named_laws(wider.section))["stagger_angle"] == TABLE
+    assert len(wider.section.thickness) > len(law_points(design.section.thickness))

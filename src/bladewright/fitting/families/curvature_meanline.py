@@ -1,168 +1,110 @@
-"""Where a section on a mean line of given second derivative begins, and which control points may be added."""
+"""Where a section on a mean line of given second derivative begins."""
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from bladewright.designs import ChordwiseLaw, Law
-from bladewright.fitting.families.section_samples import SampledSection
+from bladewright.fitting.families.section_shape import SectionShape
 from bladewright.nurbs.basis import Reals
 from bladewright.section.curvature_meanline import CurvatureMeanline
 from bladewright.section.laws import law_points
 from bladewright.section.thickness.modified_naca import ModifiedNaca
 from bladewright.section.thickness.quartic import QuarticSpline
-from bladewright.section.thickness.wennerstrom import Wennerstrom
+from bladewright.section.thickness.wennerstrom import RATIOS, Wennerstrom
 
-CURVATURES, MULTIPLIERS = 4, 5
-"""control points of the second derivative and of the thickness multiplier (`MULTIPLIERS`) to begin with"""
-MOST_CONTROL_POINTS = 14
-"""control points of either law at most; it bounds the time of growth."""
-STRAIGHT_CAMBER = np.radians(0.5)
-"""camber [rad] below which the second derivative is taken as constant: its shape cannot be seen."""
-LEAST_CURVATURE = 0.1
-"""smallest control point of the second derivative to begin with, of the largest."""
-FREE_PLACES_FROM = 2
-"""control points of the second derivative up to which they have no places of their own"""
-REFLEX_RATIO = 0.7
-"""ratio of a mean line's turning to its total bending below which it clearly bends back."""
-_EVEN = (1.0,) * CURVATURES
-_LAWS = (
-    Wennerstrom(
-        maximum_thickness=0.1, maximum_thickness_at=0.4, leading_edge_thickness=0.02, trailing_edge_thickness=0.02
-    ),
-    ModifiedNaca(
-        maximum_thickness=0.1, maximum_thickness_at=0.4, trailing_edge_thickness=0.02, trailing_edge_slope=-0.1
-    ),
-    QuarticSpline(
-        maximum_thickness=0.1, maximum_thickness_at=0.4, leading_edge_thickness=0.03, trailing_edge_thickness=0.02
-    ),
-    Wennerstrom(
-        maximum_thickness=0.1,
-        maximum_thickness_at=0.4,
-        leading_edge_thickness=0.02,
-        trailing_edge="blunt",
-        trailing_edge_thickness=0.02,
-    ),
-    QuarticSpline(
-        maximum_thickness=0.1,
-        maximum_thickness_at=0.4,
-        leading_edge_thickness=0.03,
-        trailing_edge_thickness=0.008,
-        trailing_edge="sharp",
-    ),
-)
+_BODY: dict[str, Any] = {"maximum_thickness": 0.1, "maximum_thickness_at": 0.4}
+_ROUND: dict[str, Any] = {**_BODY, "leading_edge_thickness": 0.02, "trailing_edge_thickness": 0.02}
 TEMPLATES = tuple(
-    CurvatureMeanline(metal_angle_in=0.0, metal_angle_out=0.0, curvature=_EVEN, thickness=law) for law in _LAWS
+    CurvatureMeanline(metal_angle_in=0.0, metal_angle_out=0.0, curvature=(1.0,) * 4, thickness=law)
+    for law in (
+        Wennerstrom(**_ROUND),
+        Wennerstrom(**_ROUND, trailing_edge="blunt"),
+        ModifiedNaca(**_BODY, trailing_edge_thickness=0.02, trailing_edge_slope=-0.1),
+        QuarticSpline(**_ROUND),
+        QuarticSpline(**_ROUND, trailing_edge="sharp"),
+    )
 )
-"""structures that are tried where none is given"""
+"""parts whose structures are tried where none is given"""
+STRAIGHT = np.radians(0.5)
+"""turning of a mean line [rad] below which the shape of its second derivative cannot be seen"""
+LEAST_CURVATURE = 0.1
+"""smallest control point of the second derivative to begin with, of the largest: of one sign, it always has a shape"""
 
 
-def templates(section: SampledSection, parameters: int | None) -> Sequence[CurvatureMeanline]:  # noqa: ARG001 - the contract's
-    """Structures that are tried where none is given."""
-    return TEMPLATES
-
-
-def starts(section: SampledSection, like: CurvatureMeanline) -> Sequence[CurvatureMeanline]:
-    """The part of a structure nearest to a section."""
-    return [_start(section, like)]
-
-
-def _start(section: SampledSection, like: CurvatureMeanline) -> CurvatureMeanline:
-    """The part of a structure nearest to a section: its angles, the bends of its mean line, and its thickness."""
-    angles = [float(np.degrees(np.clip(section.stagger + each, -1.5, 1.5))) for each in section.angles]
-    found = replace(like, metal_angle_in=angles[0], metal_angle_out=angles[1], thickness=_thickness(section, like))
-    if like.curvature:
-        inner = [_number(each) for each in like.curvature_places]
-        places = np.array([0.0, *inner, 1.0]) if inner else np.linspace(0.0, 1.0, len(like.curvature))
-        found = replace(
-            found, curvature=tuple(float(each) for each in _curvatures(section, places)), curvature_places=tuple(inner)
-        )
-    zeros = (0.0,) * len(like.thickness_multiplier)
-    return replace(found, thickness_multiplier=zeros)
-
-
-def _curvatures(section: SampledSection, places: Reals) -> Reals:
-    """Control points of the second derivative; of one sign unless the mean line clearly bends back."""
-    turning = np.tan(section.angles[1]) - np.tan(section.angles[0])
-    if turning**2 < STRAIGHT_CAMBER**2:
-        return np.ones(len(places))
-    # higher powers bend back at the edges, where the mean line is badly known
-    u = np.linspace(0.03, 0.97, 60)
-    bends = np.polynomial.Polynomial.fit(u, section.mean(u), 4).deriv(2)(places) / turning
-    even = np.maximum(bends, LEAST_CURVATURE * np.max(bends))
-    total = np.trapezoid(bends, places)
-    # a line that bends back turns less than it bends
-    back = 0.0 < total < REFLEX_RATIO * np.trapezoid(np.abs(bends), places)
-    return np.asarray(bends / np.max(np.abs(bends)) if back else even / np.max(even))
-
-
-def _thickness(section: SampledSection, like: CurvatureMeanline) -> Wennerstrom | ModifiedNaca | QuarticSpline:
-    law = like.thickness
-    maximum, at = section.thickest
-    # a thick leading edge may show the largest half thickness at the edge
-    at = float(np.clip(at, 0.15, 0.8))
-    # the thickness of an edge is that of the ellipse with the section's radius
-    first, last = (
-        float(np.clip(2.0 * radius * ratio, 0.02 * maximum, 0.6 * maximum))
-        for radius, ratio in zip(section.radii, _ratios(law), strict=True)
-    )
-    behind = float(np.clip(2.0 * section.half_at(0.985), 0.01 * maximum, 0.6 * maximum))
-    if isinstance(law, Wennerstrom):
-        return replace(
-            law,
-            maximum_thickness=maximum,
-            maximum_thickness_at=at,
-            leading_edge_thickness=None if law.leading_edge == "sharp" else first,
-            trailing_edge_thickness={"sharp": None, "blunt": behind}.get(law.trailing_edge, last),
-        )
-    if isinstance(law, ModifiedNaca):
-        index = float(np.clip(6.0 * np.sqrt(max(section.radii[0], 1e-6) / 1.1019) / maximum, 1.0, 11.0))
-        slope = float(np.clip((section.half_at(0.97) - section.half_at(0.85)) / 0.12, -1.0, -0.01))
-        return replace(
-            law,
-            leading_edge_index=index,
-            maximum_thickness=maximum,
-            maximum_thickness_at=at,
-            trailing_edge_thickness=None if law.trailing_edge == "sharp" else behind,
-            trailing_edge_slope=None if law.trailing_edge_slope is None else slope,
-        )
-    return replace(
-        law,
-        maximum_thickness=maximum,
-        maximum_thickness_at=at,
-        leading_edge_thickness=float(np.clip(2.0 * section.half_at(0.03), 0.1 * maximum, 0.7 * maximum)),
-        trailing_edge_thickness=float(np.clip(2.0 * section.half_at(0.95), 0.05 * maximum, 0.5 * maximum)),
-    )
-
-
-def _ratios(law: Wennerstrom | ModifiedNaca | QuarticSpline) -> tuple[float, float]:
-    if not isinstance(law, Wennerstrom):
-        return 1.0, 1.0
-    return _number(law.leading_edge_ratio or 1.0), _number(law.trailing_edge_ratio or 1.0)
-
-
-def _number(law: Law) -> float:
-    return float(np.mean(law_points(law)))
-
-
-def extensions(part: CurvatureMeanline, section: SampledSection) -> Sequence[CurvatureMeanline]:  # noqa: ARG001 - the contract's
-    """The part with one control point more of the second derivative or of the thickness multiplier, or free places."""
+def first_parts(shape: SectionShape, like: CurvatureMeanline | None) -> Sequence[CurvatureMeanline]:
+    """The parts nearest to a section: its angles, the bends of its mean line, and its thickness."""
+    ends = np.degrees(np.clip(shape.stagger + shape.angles(np.array([0.0, 1.0])), -1.5, 1.5))
     found = []
-    if part.curvature and not part.curvature_places and len(part.curvature) < MOST_CONTROL_POINTS:
-        found.append(replace(part, curvature=_wider(part.curvature)))
-    if len(part.curvature) > FREE_PLACES_FROM and not part.curvature_places:
-        places = np.linspace(0.0, 1.0, len(part.curvature))[1:-1]
-        found.append(replace(part, curvature_places=tuple(places.tolist())))
-    count = len(part.thickness_multiplier)
-    if not part.thickness_multiplier_places and count < MOST_CONTROL_POINTS:
-        wider = _wider(part.thickness_multiplier) if count else (0.0,) * MULTIPLIERS
-        found.append(replace(part, thickness_multiplier=wider))
+    for each in TEMPLATES if like is None else [like]:
+        inner = [_number(place) for place in each.curvature_places]
+        places = np.array([0.0, *inner, 1.0]) if inner else np.linspace(0.0, 1.0, len(each.curvature))
+        found.append(
+            replace(
+                each,
+                metal_angle_in=float(ends[0]),
+                metal_angle_out=float(ends[1]),
+                curvature=tuple(_curvatures(shape, places).tolist()) if each.curvature else (),
+                curvature_places=tuple(inner),
+                thickness=replace(each.thickness, **_thickness(shape, each.thickness)),
+                thickness_multiplier=(0.0,) * len(each.thickness_multiplier),
+            )
+        )
     return found
 
 
-def _wider(laws: ChordwiseLaw) -> tuple[float, ...]:
-    """One control point more on the same polygon."""
-    count = len(laws)
-    at = np.linspace(0.0, 1.0, count + 1)
-    return tuple(np.interp(at, np.linspace(0.0, 1.0, count), [_number(law) for law in laws]).tolist())
+def _curvatures(shape: SectionShape, places: Reals) -> Reals:
+    """The second derivative of the mean line at places, of its largest."""
+    bends = shape.camber.deriv(2)(places)
+    if abs(np.ptp(shape.angles(np.array([0.0, 1.0])))) < STRAIGHT:
+        return np.ones(len(places))
+    bends = bends / bends[np.argmax(bends**2)]
+    return np.asarray(np.maximum(bends, LEAST_CURVATURE))
+
+
+def _thickness(shape: SectionShape, law: Any) -> dict[str, Any]:
+    """The fields of a thickness law that a section shows."""
+    maximum, at = shape.thickest
+    # a half thickness of an ellipse's radius of curvature b^2 / a, with a = ratio b
+    ends = [2.0 * radius * ratio for radius, ratio in zip(shape.radii, _ratios(law), strict=True)]
+    first, tail, last, end = (float(each) for each in shape.half(np.array([0.03, 0.85, 0.95, 0.985])))
+    known: dict[str, Any] = {
+        "maximum_thickness": maximum,
+        "maximum_thickness_at": float(np.clip(at, 0.15, 0.8)),
+        "leading_edge_thickness": ends[0],
+        "trailing_edge_thickness": 2.0 * last if _field(law, "trailing_edge") == "blunt" else ends[1],
+    }
+    if isinstance(law, ModifiedNaca):
+        # the radius of the leading edge is 1.1019 (thickness I / 6)^2 (NACA Report 492)
+        index = 6.0 * np.sqrt(shape.radii[0] / 1.1019) / maximum
+        known |= {
+            "leading_edge_index": float(np.clip(index, 1.0, 11.0)),
+            "trailing_edge_slope": float(np.clip(10.0 * (last - tail), -1.0, -0.01)),
+            "trailing_edge_thickness": 2.0 * end,
+        }
+    if isinstance(law, QuarticSpline):
+        # this law works with its maximum near 0.3
+        known |= {
+            "maximum_thickness_at": 0.3,
+            "leading_edge_thickness": 2.0 * first,
+            "trailing_edge_thickness": 2.0 * last,
+        }
+    for name in ("leading_edge_thickness", "trailing_edge_thickness"):
+        known[name] = float(np.clip(known[name], 0.02 * maximum, 0.6 * maximum))
+    return {name: value for name, value in known.items() if _field(law, name) is not None}
+
+
+def _ratios(law: Any) -> tuple[float, float]:
+    """Ratios of the axes of elliptic edges."""
+    given = (_field(law, f"{edge}_ratio") for edge in RATIOS)
+    first, last = (_number(ratio or usual) for ratio, usual in zip(given, RATIOS.values(), strict=True))
+    return first, last
+
+
+def _field(law: Any, name: str) -> Any:
+    return vars(law).get(name)
+
+
+def _number(law: Any) -> float:
+    return float(np.mean(law_points(law)))

@@ -5,13 +5,13 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from bladewright.blade.design.flow_path import FlowPath
 from bladewright.blade.design.meridional_curve import ControlPolygon, Meridian, ThroughPoints
 from bladewright.blade.native.blade import Blade
 from bladewright.designs import Point
 from bladewright.errors import FitError
-from bladewright.fitting.families.polyline import nearest_on
 from bladewright.fitting.free_parameters import WALLS
 from bladewright.numerics.elementary import cumulative_length
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
@@ -108,7 +108,7 @@ def _wall(line: Reals) -> Reals:
         at[-2] = min(at[-2], 0.5 * (along[-1] + along[-2]))
         rows = np.stack([np.interp(at, along, longer[:, i]) for i in (0, 1)], axis=-1)
         curve = np.real(ThroughPoints(points=_points(rows, 1.0)).line(1.0).values(np.linspace(0.0, 1.0, 801)))
-        if np.max(nearest_on(curve, line).heights ** 2) <= (WALL_DISTANCE * size) ** 2:
+        if np.max(cKDTree(curve).query(line)[0]) <= WALL_DISTANCE * size:
             break
     return rows
 

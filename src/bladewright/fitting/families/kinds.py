@@ -1,4 +1,4 @@
-"""The families that are one part, as fits know them: designs, starts and growth, by name."""
+"""The families that are one part, as fits know them: their designs and where they begin, by name."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -10,11 +10,12 @@ from bladewright.designs import Design
 from bladewright.fitting.families import (
     camber_angle,
     curvature_meanline,
+    part_laws,  # noqa: F401 - makes the laws of parts known
     profile,
     suction_pressure,
     wedge_diffuser,
 )
-from bladewright.fitting.families.section_samples import SampledSection
+from bladewright.fitting.families.section_shape import SectionShape
 from bladewright.section.camber_angle import CamberAngleSection
 from bladewright.section.curvature_meanline import CurvatureMeanlineSection
 from bladewright.section.planar import PlanarSection
@@ -29,13 +30,9 @@ class FitFamily:
 
     name: str
     section: type[PlanarSection]
-    templates: Callable[[SampledSection, int | None], Sequence[Any]]
-    """parts whose structures are tried for a section where none is given, or for so many free parameters"""
-    starts: Callable[[SampledSection, Any], Sequence[Any]]
-    """parts of a structure near to a section, nearest first; may raise DesignError"""
-    extensions: Callable[[Any, SampledSection], Sequence[Any]]
-    """parts near to one that stands for a section, each with one control point more; may raise DesignError"""
-    through_points: Callable[[SampledSection, int], Any] | None = None
+    first_parts: Callable[[SectionShape, Any], Sequence[Any]]
+    """the parts nearest to a section: of the structure of a given part, or of every structure that is tried"""
+    through_points: Callable[[SectionShape, int], Any] | None = None
     """the part through so many points of a section, where the family has one that follows any outline"""
 
     @property
@@ -44,25 +41,21 @@ class FitFamily:
         return BLADE_OF[self.section]
 
 
-def _family(name: str, section: type[PlanarSection], module: Any) -> FitFamily:
-    return FitFamily(
-        name=name,
-        section=section,
-        templates=module.templates,
-        starts=module.starts,
-        extensions=module.extensions,
-        through_points=getattr(module, "through_points", None),
-    )
-
-
 FAMILIES = {
     kind.name: kind
     for kind in (
-        _family("curvature-meanline", CurvatureMeanlineSection, curvature_meanline),
-        _family("suction-pressure", SuctionPressureSection, suction_pressure),
-        _family("wedge-diffuser", WedgeDiffuserSection, wedge_diffuser),
-        _family("camber-angle", CamberAngleSection, camber_angle),
-        _family("profile", ProfileSection, profile),
+        FitFamily(
+            name="curvature-meanline", section=CurvatureMeanlineSection, first_parts=curvature_meanline.first_parts
+        ),
+        FitFamily(name="suction-pressure", section=SuctionPressureSection, first_parts=suction_pressure.first_parts),
+        FitFamily(name="wedge-diffuser", section=WedgeDiffuserSection, first_parts=wedge_diffuser.first_parts),
+        FitFamily(name="camber-angle", section=CamberAngleSection, first_parts=camber_angle.first_parts),
+        FitFamily(
+            name="profile",
+            section=ProfileSection,
+            first_parts=profile.first_parts,
+            through_points=profile.through_points,
+        ),
     )
 }
 """the families by name"""

@@ -15,7 +15,7 @@ from scipy.linalg import LinAlgError, cho_factor, cho_solve, eigvalsh
 from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.matching.search import Match
 from bladewright.fitting.model_selection.reshaping import Counts, ResizableLaw, reshaped, resizable_laws
-from bladewright.fitting.model_selection.structure import Structure, structure_of, with_samples
+from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.nurbs.basis import Reals
 
 LARGEST_STEP = 3
@@ -102,6 +102,8 @@ class LinearModel:
         self._values: list[Reals] = []
         for law in resizable_laws(match.design):
             own = law.paths(match.design)
+            if not own:
+                continue
             free = np.array([path in place for path in own])
             # a law that is held in part keeps its control points, but for the channel's corners
             if not (np.all(free) or (law.holds_corners and np.any(free))):
@@ -241,7 +243,7 @@ class LinearModel:
             found.append(float(np.sum((rest + part @ step)[points] ** 2)))
         return np.array(found)
 
-    def structured(self, counts: Sequence[Counts]) -> Structure:
+    def structured(self, counts: Sequence[Counts]) -> Any:
         """The structure with these numbers of control points."""
         structure = self.structure
         for law, each in zip(self.laws, counts, strict=True):
@@ -255,4 +257,4 @@ class LinearModel:
         scales = scales_of(self.design, paths, self.chord)
         values = np.clip(values, scales.low, scales.high)
         rich = self.design.changed({path: float(value) for path, value in zip(paths, values, strict=True)})
-        return reshaped(rich, with_samples(structure, self.samples))
+        return reshaped(rich, structure.with_samples(self.samples))

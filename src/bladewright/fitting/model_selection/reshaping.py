@@ -2,6 +2,7 @@
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
+from functools import singledispatch
 from typing import Any, ClassVar, final
 
 import numpy as np
@@ -38,18 +39,25 @@ COMPARED_PLACES = np.linspace(0.0, 1.0, 101)
 """parameters at which laws and curves are compared"""
 
 
-def reshaped(design: Design, structure: Structure) -> Design:
+@singledispatch
+def reshaped(design: Design, structure: Any) -> Design:  # noqa: ARG001 - the contract's
     """A design of another structure whose laws and curves are nearest to those of `design`, by least squares."""
-    if isinstance(design, UnifiedSection):
-        thicknesses: dict[str, Any] = {
-            name: tuple(float(row[0]) for row in grid_of(getattr(design, name), count, 1, structure))
-            for name, count in zip(THICKNESSES, structure.chordwise, strict=True)
-        }
-        return replace(design, samples=structure.samples, clustering=structure.clustering, **thicknesses)
-    if not isinstance(design, UnifiedBlade):
-        raise FitError(
-            f"a {type(design).__name__} has no structure of the unified family: give a design of that family"
-        )
+    raise FitError(
+        f"a {type(design).__name__} has no laws that a fit knows: give a design of the unified family, or another"
+    )
+
+
+@reshaped.register
+def _(design: UnifiedSection, structure: Structure) -> Design:
+    thicknesses: dict[str, Any] = {
+        name: tuple(float(row[0]) for row in grid_of(getattr(design, name), count, 1, structure))
+        for name, count in zip(THICKNESSES, structure.chordwise, strict=True)
+    }
+    return replace(design, samples=structure.samples, clustering=structure.clustering, **thicknesses)
+
+
+@reshaped.register
+def _(design: UnifiedBlade, structure: Structure) -> Design:
     place = _field(design, "place")
     changes: dict[str, Any] = {
         name: law_of(getattr(design, name), structure.span[name], LAW_LIMITS[name]) for name in SPANWISE
@@ -168,11 +176,11 @@ class ResizableLaw(ABC):
     """whether it may change though some of its parameters, the corners of a channel, are held"""
 
     @abstractmethod
-    def counts(self, structure: Structure) -> Counts:
+    def counts(self, structure: Any) -> Counts:
         """Its numbers of control points."""
 
     @abstractmethod
-    def resized(self, structure: Structure, counts: Counts) -> Structure:
+    def resized(self, structure: Any, counts: Counts) -> Any:
         """The structure with other numbers of them."""
 
     @abstractmethod
@@ -184,7 +192,7 @@ class ResizableLaw(ABC):
         """The parameters (k,) that are its control points' numbers."""
 
     @abstractmethod
-    def embedding(self, structure: Structure, counts: Counts) -> Reals:
+    def embedding(self, structure: Any, counts: Counts) -> Reals:
         """Its numbers (k, j) in a structure that are nearest to those of a law with other counts."""
 
 
@@ -206,7 +214,7 @@ class SpanLaw(ResizableLaw):
         return number_paths(getattr(design, name), name)
 
     def embedding(self, structure: Structure, counts: Counts) -> Reals:
-        return _law_embedding(structure.span[self.name], counts[0], COMPARED_PLACES)
+        return law_embedding(structure.span[self.name], counts[0], COMPARED_PLACES)
 
 
 @final
@@ -231,8 +239,8 @@ class ThicknessLaw(ResizableLaw):
 
     def embedding(self, structure: Structure, counts: Counts) -> Reals:
         along, across = self.counts(structure)
-        chordwise = _law_embedding(along, counts[0], samples_of(structure))
-        return np.asarray(np.kron(chordwise, _law_embedding(across, counts[1], COMPARED_PLACES)))
+        chordwise = law_embedding(along, counts[0], samples_of(structure))
+        return np.asarray(np.kron(chordwise, law_embedding(across, counts[1], COMPARED_PLACES)))
 
 
 @final
@@ -274,6 +282,7 @@ class ChannelCurves(ResizableLaw):
         return np.asarray(np.kron(found, np.eye(2)))
 
 
+@singledispatch
 def resizable_laws(design: Any) -> list[ResizableLaw]:
     """The laws of a design whose numbers of control points may change: stations stay."""
     structure = structure_of(design)
@@ -282,7 +291,8 @@ def resizable_laws(design: Any) -> list[ResizableLaw]:
     return [*laws, ChannelCurves("channel", design.channel.degree)] if structure.channel else laws
 
 
-def _law_embedding(count: int, other: int, places: Reals) -> Reals:
+def law_embedding(count: int, other: int, places: Reals) -> Reals:
+    """Control points (count, other) of the laws nearest to those of another number, at places (n,)."""
     if count == other:
         return np.eye(count)
     return np.asarray(np.linalg.lstsq(law_basis(count, places), law_basis(other, places), rcond=None)[0])

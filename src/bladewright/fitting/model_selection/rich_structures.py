@@ -1,10 +1,12 @@
 """Structures with control points to spare, from which others are chosen."""
 
 from dataclasses import replace
+from functools import singledispatch
+from typing import Any
 
 from bladewright.designs import Design
 from bladewright.fitting.model_selection.reshaping import reshaped, resizable_laws
-from bladewright.fitting.model_selection.structure import Structure, structure_of, with_samples
+from bladewright.fitting.model_selection.structure import structure_of
 
 RICH_CHORDWISE = {2: 24, 3: 10}
 """control points along the chord of a rich structure, by dimension."""
@@ -18,21 +20,23 @@ RICH_CHANNEL = (8, 8, 6, 6)
 """control points of the edges, of hub and of shroud."""
 
 
-def rich_structure(design: Design, points: int) -> Structure:
+def rich_structure(design: Design, points: int) -> Any:
     """A structure with more control points in every law than a match of so many points is likely to need."""
-    own, whole = structure_of(design), _richest(design)
+    own, whole = structure_of(design), richest(design)
     for share in SHARES:
         rich = own
         for law in resizable_laws(design):
             counts = zip(law.counts(own), law.counts(whole), strict=True)
             rich = law.resized(rich, tuple(count + round(share * (most - count)) for count, most in counts))
-        rich = with_samples(rich, own.samples)
+        rich = rich.with_samples(own.samples)
         if len(reshaped(design, rich).parameters()) * POINTS_PER_PARAMETER <= points:
             break
     return rich
 
 
-def _richest(design: Design) -> Structure:
+@singledispatch
+def richest(design: Design) -> Any:
+    """The structure with all the control points that a match may begin with."""
     own = structure_of(design)
     least = RICH_CHORDWISE[3 if own.channel else 2]
     span = {
@@ -44,10 +48,10 @@ def _richest(design: Design) -> Structure:
     return replace(own, chordwise=chordwise, span=span, channel=channel)
 
 
-def wider_structure(design: Design) -> Structure:
+def wider_structure(design: Design) -> Any:
     """A rich structure with half as many control points again in every law of a design."""
-    own, wide = structure_of(design), _richest(design)
+    own, wide = structure_of(design), richest(design)
     for law in resizable_laws(design):
         counts = zip(law.counts(own), law.counts(wide), law.limits()[1], strict=True)
         wide = law.resized(wide, tuple(max(rich, min(count + count // 2, most)) for count, rich, most in counts))
-    return with_samples(wide, own.samples)
+    return wide.with_samples(own.samples)

@@ -71,7 +71,7 @@ def selected_match(
     )
     if target.structured and target.tolerance is None:
         return _of_structure(several, many, found, like or structure_of(first), guessed=guessed), ""
-    held = target.parameters is not None and _ends_in_rows(found)
+    held = target.parameters is not None and bool(corner_radii(first)) and _ends_in_rows(found)
     reason = CORNERS_HELD_NOTE if held else ""
     if held:
         several, many = _with_corners_held(several), _with_corners_held(many)
@@ -79,7 +79,8 @@ def selected_match(
     if task.dimension == 3 and guessed:
         # laws that need no control points along the span begin as constants
         found = replace(selection, task=task.thinned(QUICK_POINTS)).well_predicted(found)
-    rich = selection.rich(found)
+    near = target.open and found.maximum < NEAR * found.model.chord
+    rich = found if near else selection.rich(found)
     if task.dimension == 3 and _refused(rich):
         selection = selection.with_margin()
         many = replace(many, margin_factor=selection.task.margin_factor)
@@ -190,10 +191,10 @@ class _Selection:
 
     def rich(self, match: Match) -> Match:
         """The match of a rich structure, or the one before where that leaves it no shape."""
-        design = with_feasible_edges(reshaped(match.design, rich_structure(match.design, len(self.task.points))))
         try:
+            design = with_feasible_edges(reshaped(match.design, rich_structure(match.design, len(self.task.points))))
             return searched(self.task, design, noise=match.rms, rounds=QUICK_ROUNDS + 1, min_reduction=ROUGH_REDUCTION)
-        except FitError:
+        except (DesignError, FitError):
             return match
 
     def of_size(self, rich: Match, most: int) -> Match:
@@ -287,10 +288,10 @@ class _Selection:
 
     def _widened(self, match: Match) -> Match:
         """A match with more control points in every law, not searched, or the same where that leaves it no shape."""
-        design = reshaped(match.design, wider_structure(match.design))
         try:
+            design = reshaped(match.design, wider_structure(match.design))
             return searched(self.task, design, noise=match.rms, rounds=0)
-        except FitError:
+        except (DesignError, FitError):
             return match
 
     def _searched(self, model: LinearModel, prediction: Prediction) -> Match | None:

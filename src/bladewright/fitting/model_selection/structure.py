@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import singledispatch
+from typing import Any
 
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Design, Law, Stations
@@ -40,17 +42,30 @@ class Structure:
     samples: int = 16
     clustering: float = 1.0
 
+    def with_samples(self, least: int) -> "Structure":
+        """The structure with as many samples along the chord as its thicknesses need, and at least so many."""
+        return replace(self, samples=min(MOST_SAMPLES, max(least, max(self.chordwise) + SPARE_SAMPLES)))
 
-def structure_of(design: Design) -> Structure:
+
+@singledispatch
+def structure_of(design: Design) -> Any:
     """The structure of a design."""
-    if isinstance(design, UnifiedSection):
-        return Structure(
-            chordwise=(len(design.thickness_upper), len(design.thickness_lower)),
-            samples=design.samples,
-            clustering=design.clustering,
-        )
-    if not isinstance(design, UnifiedBlade):
-        raise FitError(f"a {type(design).__name__} has no laws of the unified family; give a design of that family")
+    raise FitError(
+        f"a {type(design).__name__} has no laws that a fit knows: give a design of the unified family, or another"
+    )
+
+
+@structure_of.register
+def _(design: UnifiedSection) -> Structure:
+    return Structure(
+        chordwise=(len(design.thickness_upper), len(design.thickness_lower)),
+        samples=design.samples,
+        clustering=design.clustering,
+    )
+
+
+@structure_of.register
+def _(design: UnifiedBlade) -> Structure:
     place = design.leading_edge_theta if design.arrangement == "annular" else design.leading_edge_y
     span = {name: _count(getattr(design, name)) for name in SPANWISE} | {
         "place": _count(0.0 if place is None else place)
@@ -78,11 +93,6 @@ def structure_of(design: Design) -> Structure:
 
 def _count(law: Law) -> int:
     return len(law_points(law))
-
-
-def with_samples(structure: Structure, least: int) -> Structure:
-    """The structure with as many samples along the chord as its thicknesses need, and at least so many."""
-    return replace(structure, samples=min(MOST_SAMPLES, max(least, max(structure.chordwise) + SPARE_SAMPLES)))
 
 
 def _blade(

@@ -1,0 +1,251 @@
+"""The laws of designs of one part, whose numbers of control points a match may choose: along the chord and the span."""
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import singledispatch
+from typing import Any, ClassVar, final
+
+import numpy as np
+
+from bladewright.blade.design.sectioned import SectionedBlade
+from bladewright.designs import Law
+from bladewright.fitting.initial_guess.laws import plain_law
+from bladewright.fitting.model_selection.reshaping import (
+    COMPARED_PLACES,
+    Counts,
+    ResizableLaw,
+    law_embedding,
+    reshaped,
+    resizable_laws,
+)
+from bladewright.fitting.model_selection.rich_structures import richest
+from bladewright.fitting.model_selection.structure import MOST_SPAN, structure_of
+from bladewright.fitting.models.planar import SINGLE_SECTION
+from bladewright.nurbs.basis import Reals
+from bladewright.section.camber_angle import CamberAngle
+from bladewright.section.curvature_meanline import CurvatureMeanline
+from bladewright.section.laws import Span, law_basis, law_points, named_laws, number_paths, stations_of
+from bladewright.section.planar import PlanarSection
+from bladewright.section.suction_pressure.part import SuctionPressure
+
+RICH_CHORDWISE = {2: 12, 3: 8}
+"""control points of a law along the chord in a rich structure, by dimension."""
+RICH_SPAN = 5
+"""control points of a law along the span in a rich structure."""
+MOST_CHORDWISE = 24
+"""control points of a law along the chord at most; it bounds the time."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Chordwise:
+    """A row of control points along the chord whose number may change."""
+
+    fewest: int
+    optional: bool = False
+    """whether the row may be left out, which is as if it were zero; its fewest control points then count as one"""
+    held: Counts = (0, 0)
+    """control points before and behind the row that its curve has besides, and that stay"""
+    by_ratio: bool = False
+    """whether only the ratios of its numbers count"""
+    places: Callable[[int], Reals] | None = None
+    """the places along the chord of all control points of a curve by their number; None where they are even"""
+
+    def points(self, count: int) -> int:
+        """How many control points a count stands for."""
+        return count + self.fewest - 1 if count and self.optional else count
+
+    def count(self, points: int) -> int:
+        """The count of a row of so many control points."""
+        return points - self.fewest + 1 if points and self.optional else points
+
+    def basis(self, count: int) -> Reals:
+        """Values (m, points) along the chord of the basis functions of the control points."""
+        first, last = self.held
+        points = self.points(count)
+        if not points:
+            return np.zeros((len(COMPARED_PLACES), 0))
+        at = COMPARED_PLACES
+        if self.places is not None:
+            along = law_basis(points + first + last, at) @ self.places(points)
+            at = np.interp(at, along, at)
+        return law_basis(points + first + last, at)[:, first : first + points]
+
+
+@singledispatch
+def chordwise_rows(part: Any) -> dict[str, Chordwise]:  # noqa: ARG001 - most parts have none
+    """The rows of a part whose number of control points may change, by field: those without given places."""
+    return {}
+
+
+@chordwise_rows.register
+def _(part: CamberAngle) -> dict[str, Chordwise]:
+    found = {"camber_angle": Chordwise(fewest=1)}
+    if not (part.thickness_places or part.thickness_weights):
+
+        def places(count: int) -> Reals:
+            outline = replace(part, half_thickness=(0.01,) * count).outline(SINGLE_SECTION)
+            return np.asarray(np.real(outline.places.controls)[0])
+
+        held = 1, 0 if part.trailing_edge == "blunt" else 1
+        found["half_thickness"] = Chordwise(fewest=3, held=held, places=places)
+    return found
+
+
+@chordwise_rows.register
+def _(part: CurvatureMeanline) -> dict[str, Chordwise]:
+    found = {}
+    if part.curvature and not part.curvature_places:
+        found["curvature"] = Chordwise(fewest=2, by_ratio=True)
+    if not part.thickness_multiplier_places:
+        found["thickness_multiplier"] = Chordwise(fewest=3, optional=True)
+    return found
+
+
+@chordwise_rows.register
+def _(part: SuctionPressure) -> dict[str, Chordwise]:
+    heights = {name: getattr(part, f"{name}_heights") for name in ("suction", "pressure")}
+    return {
+        f"{name}_heights": Chordwise(fewest=1, held=(2, 2))
+        for name, row in heights.items()
+        if row and not (getattr(part, f"{name}_places") or getattr(part, f"{name}_knots"))
+    }
+
+
+POSITIONS = ("leading_edge_theta", "leading_edge_y")
+"""where the leading edge of a blade stands"""
+
+
+@dataclass(frozen=True)
+class PartStructure:
+    """Numbers of control points of the laws of a part, and of the position of a blade's leading edge."""
+
+    counts: Mapping[str, Counts]
+    """along the chord and along the span, by path"""
+    samples: int = 0
+
+    def with_samples(self, least: int) -> "PartStructure":  # noqa: ARG002 - sections of one part are not sampled
+        """The same."""
+        return self
+
+
+@dataclass(frozen=True)
+class PartLaw(ResizableLaw):
+    """A law along the span, or a row of them along the chord; its name is its path."""
+
+    row: Chordwise | None
+    spanwise: bool
+    """whether it may vary along the span"""
+
+    def value(self, design: Any) -> Any:
+        """The law, or the row of laws, of a design."""
+        for step in re.findall(r"\w+", self.name):
+            design = design[int(step)] if step.isdigit() else getattr(design, step)
+        return design
+
+    def grid(self, design: Any) -> list[Law]:
+        """Its laws along the span, one for each control point along the chord."""
+        value = self.value(design)
+        return [value] if self.row is None else list(value)
+
+    def counts(self, structure: PartStructure) -> Counts:
+        return structure.counts[self.name]
+
+    def counts_of(self, design: Any) -> Counts:
+        """Its numbers of control points in a design."""
+        laws = self.grid(design)
+        across = max((len(law_points(law)) for law in laws), default=1)
+        return 1 if self.row is None else self.row.count(len(laws)), across
+
+    def resized(self, structure: PartStructure, counts: Counts) -> PartStructure:
+        return PartStructure({**structure.counts, self.name: counts})
+
+    def limits(self) -> tuple[Counts, Counts]:
+        most = MOST_SPAN if self.spanwise else 1
+        if self.row is None:
+            return (1, 1), (1, most)
+        return (0 if self.row.optional else self.row.fewest, 1), (MOST_CHORDWISE, most)
+
+    def paths(self, design: Any) -> list[str]:
+        stems = [self.name] if self.row is None else [f"{self.name}[{i}]" for i in range(len(self.value(design)))]
+        return [path for law, stem in zip(self.grid(design), stems, strict=True) for path in number_paths(law, stem)]
+
+    def embedding(self, structure: PartStructure, counts: Counts) -> Reals:
+        along, across = self.counts(structure)
+        chordwise = np.eye(1)
+        if self.row is not None:
+            same = along == counts[0]
+            chordwise = np.eye(self.row.points(along)) if same else _nearest(self.row, along, counts[0])
+        return np.asarray(np.kron(chordwise, law_embedding(across, counts[1], COMPARED_PLACES)))
+
+    def resized_value(self, design: Any, counts: Counts) -> Any:
+        """Its laws nearest to those of a design, with other numbers of control points."""
+        along, across = self.counts_of(design)
+        laws = self.grid(design)
+        if (along, across) == counts and all(len(law_points(law)) == across for law in laws):
+            return self.value(design)
+        across_rows = law_basis(counts[1], COMPARED_PLACES)
+        rows = np.zeros((len(laws), counts[1]))
+        for i, law in enumerate(laws):
+            rows[i] = np.linalg.lstsq(across_rows, np.real(Span(COMPARED_PLACES).values(law)), rcond=None)[0]
+        if self.row is not None and along != counts[0]:
+            rows = _nearest(self.row, counts[0], along) @ rows
+        least = min((float(np.min(law_points(law))) for law in laws), default=0.0)
+        if least > 0.0:
+            # laws that run past their numbers stay positive
+            rows = np.maximum(rows, 0.5 * least)
+        found = tuple(plain_law(row) for row in rows)
+        return found[0] if self.row is None else found
+
+
+@final
+class RatioLaw(PartLaw):
+    """A row of which only the ratios count, so that the largest number is held."""
+
+    holds_corners: ClassVar[bool] = True
+
+
+def _nearest(row: Chordwise, count: int, other: int) -> Reals:
+    """Control points of the rows nearest to those of another count."""
+    return np.asarray(np.linalg.lstsq(row.basis(count), row.basis(other), rcond=None)[0])
+
+
+def _laws(design: Any) -> list[Any]:
+    spanwise = isinstance(design, SectionedBlade)
+    laws = [(f"section.{path}", law) for path, law in named_laws(design.section)]
+    if spanwise:
+        laws += [(name, law) for name in POSITIONS if (law := getattr(design, name)) is not None]
+    stationary = {path.partition("[")[0] for path, law in laws if stations_of(law) is not None}
+    rows = {f"section.{name}": row for name, row in chordwise_rows(design.section).items()}
+    found: list[Any] = [
+        (RatioLaw if row.by_ratio else PartLaw)(name, row, spanwise)
+        for name, row in rows.items()
+        if name not in stationary
+    ]
+    single = [path for path, _ in laws if path.partition("[")[0] not in {*stationary, *rows}]
+    return [*found, *(PartLaw(path, None, spanwise) for path in single)] if spanwise else found
+
+
+def _structure(design: Any) -> PartStructure:
+    return PartStructure({law.name: law.counts_of(design) for law in _laws(design)})
+
+
+def _reshaped(design: Any, structure: PartStructure) -> Any:
+    return design.changed({law.name: law.resized_value(design, law.counts(structure)) for law in _laws(design)})
+
+
+def _richest(design: Any) -> PartStructure:
+    found = {}
+    for law in _laws(design):
+        along, across = law.counts_of(design)
+        most = law.limits()[1]
+        chordwise = along if law.row is None else max(along, RICH_CHORDWISE[3 if law.spanwise else 2])
+        found[law.name] = min(chordwise, most[0]), min(max(across, RICH_SPAN), most[1])
+    return PartStructure(found)
+
+
+for _kind in (PlanarSection, SectionedBlade):
+    resizable_laws.register(_kind, _laws)
+    structure_of.register(_kind, _structure)
+    reshaped.register(_kind, _reshaped)
+    richest.register(_kind, _richest)

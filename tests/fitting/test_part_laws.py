@@ -1,0 +1,98 @@
+"""Laws of the families that are one part, with other numbers of control points; where their matches begin."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bladewright.fitting.design_header import DesignHeader
+from bladewright.fitting.families.kinds import FAMILIES
+from bladewright.fitting.families.profile import first_parts, through_points
+from bladewright.fitting.families.section_shape import section_shape
+from bladewright.fitting.families.sections import _through_points, criterion, designs_of
+from bladewright.fitting.free_parameters import FreeParameters
+from bladewright.fitting.matching.search import Task, searched
+from bladewright.fitting.model_selection.match_target import MatchTarget
+from bladewright.fitting.model_selection.prediction import LinearModel
+from bladewright.fitting.model_selection.reshaping import reshaped, resizable_laws
+from bladewright.fitting.model_selection.rich_structures import richest
+from bladewright.fitting.model_selection.structure import structure_of
+from bladewright.fitting.models.feasibility import infeasibility
+from bladewright.section.laws import Span
+from machines.meanlines import BLUNT, on_meanline
+from machines.sectioned import COMPRESSOR, DESIGNS, DIFFUSER
+from machines.sections import EXAMPLES
+from machines.suction_pressure import STATOR, section
+
+PLACES = np.linspace(0.0, 1.0, 33)
+ALONE = Span(np.zeros(1))
+ROWS = on_meanline(curvature=(0.8, 1.0, 0.4), thickness=BLUNT, thickness_multiplier=(0.1, 0.0, 0.1, 0.2))
+
+
+def outline(part, v):
+    """Both sides of the sections of a part at places along the span."""
+    return np.stack([np.real(side) for side in part.outline(Span(v)).points(PLACES)])
+
+
+@pytest.mark.parametrize("design", [COMPRESSOR, DIFFUSER, DESIGNS["inlet-vane"]], ids=lambda design: design.name)
+def test_a_blade_with_more_control_points_along_the_span_is_the_same_blade(design):
+    v, structure = np.linspace(0.0, 1.0, 5), structure_of(design)
+    # the largest control point of a row that counts by ratios alone is held
+    for law in (each for each in resizable_laws(design) if set(each.paths(design)) & set(FreeParameters()(design))):
+        along, across = law.counts(structure)
+        wider = reshaped(design, law.resized(structure, (along, across + 3)))
+        assert len(FreeParameters()(wider)) > len(FreeParameters()(design)), law.name
+        # constants and laws of up to three control points are held by more; others come near
+        assert outline(wider.section, v) == pytest.approx(outline(design.section, v), abs=1e-3), law.name
+
+
+@pytest.mark.parametrize("design", [ROWS, section(STATOR), EXAMPLES["camber-angle-blunt"].design])
+def test_a_section_with_more_control_points_along_the_chord_is_nearly_the_same(design):
+    wider = reshaped(design, richest(design))
+    assert len(FreeParameters()(wider)) > len(FreeParameters()(design))
+    before, after = (section_shape(replace(each, tolerance=1e-6).build()) for each in (design, wider))
+    for place in np.linspace(0.05, 0.95, 10):
+        assert after.half(place) == pytest.approx(before.half(place), abs=0.02)
+    model = LinearModel(searched(task(design), wider, rounds=0), 0)
+    # a row that may be left out, too
+    fewest = [law.limits()[0] for law in model.laws]
+    assert model.prediction(fewest).parameters < len(FreeParameters()(design))
+    assert len(model.designed(model.prediction(fewest)).parameters()) <= len(design.parameters())
+
+
+def task(design, count=150):
+    random = np.random.default_rng(4)
+    points = np.concatenate([side(random.random(count)) for side in design.build().curves.values()])
+    return Task(points=points, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
+
+
+def test_an_outline_of_points_follows_what_no_profile_of_a_kind_does():
+    some, kind, header = task(section(STATOR)), FAMILIES["profile"], DesignHeader(name="found", length_unit="mm")
+    shape = section_shape(section(STATOR).build())
+    found = [
+        searched(some, each, rounds=1) for each in designs_of(kind, shape, first_parts(shape, None)[:3], header, some)
+    ]
+    target = MatchTarget(parameters=26)
+    outline = _through_points(some, kind, found, header, target)
+    assert len(outline.problem.paths) == 26
+    assert outline.design.section.kind == "points"
+    # so many points come within two thousandths of the chord
+    assert outline.rms < 2e-3
+    assert min(each.rms for each in found) > 4.0 * outline.rms
+    assert criterion(outline, target) < min(criterion(each, target) for each in found)
+
+
+def test_a_contour_has_points_on_the_corners_of_a_blunt_edge():
+    shape = section_shape(EXAMPLES["naca-6409-blunt"].design.build())
+    part = through_points(shape, 40)
+    assert (part.abscissas[0], part.ordinates[0]) == pytest.approx(tuple(shape.upper[-1]))
+    assert (part.abscissas[-1], part.ordinates[-1]) == pytest.approx(tuple(shape.lower[-1]))
+
+
+def test_a_section_on_too_short_a_tangent_is_crowded_before_it_is_refused():
+    assert np.max(np.real(infeasibility(STATOR, ALONE))) < 0.0
+    reach = 0.1
+    while np.max(np.real(infeasibility(replace(STATOR, pressure_tangent_in=reach), ALONE))) <= 0.0:
+        reach *= 0.998
+    # crowding begins while the section can still be made
+    assert replace(STATOR, pressure_tangent_in=reach).outline(ALONE).points(PLACES)[0].shape == (1, 33, 2)
