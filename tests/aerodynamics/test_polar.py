@@ -1,10 +1,14 @@
 """Polars by the real XFOIL: the published figures, references, marches and what goes wrong."""
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 
 import bladewright as bw
+from bladewright.aerodynamics.xfoil_output import read_polar_dump
 from bladewright.errors import PolarError
+from machines.polars import DUMP
 
 from .conftest import NACA_23012
 
@@ -103,3 +107,28 @@ def test_a_neural_network_is_near_xfoil_and_says_what_it_is(polar, section):
     assert "neural network trained on XFOIL" in quick.remarks[-1]
     with pytest.raises(PolarError, match="gives no cp and cf; take solver='xfoil'"):
         quick.segments(4.0)
+
+
+@pytest.mark.usefixtures("xfoil")
+def test_first_use_on_a_fresh_account_works_from_several_processes_at_once(polar, section, tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    with ThreadPoolExecutor(3) as pool:
+        found = list(pool.map(lambda _: bw.polar(section, 3.5e6, 4.0), range(3)))
+    assert [each.cl[0] for each in found] == [polar.cl[-1]] * 3
+    assert all(path.suffix == ".so" for path in tmp_path.glob("bladewright/*"))
+
+
+def test_a_neural_network_s_airfoil_may_lie_off_its_chord_line():
+    pytest.importorskip("neuralfoil", reason="NeuralFoil is not installed: pip install 'bladewright[polar]'")
+    flow = read_polar_dump(DUMP)[1][0].flow
+    plain = flow.x + 1j * flow.y
+    turned = 0.9 * plain * np.exp(-1j * np.radians(3.0)) + 0.1 + 0.05j
+    airfoils = [bw.Airfoil(points=np.stack([each.real, each.imag], axis=-1)) for each in (plain, turned)]
+    there = bw.polar(airfoils[0], 0.9e6, 5.0, solver="neuralfoil", moment_point=0.0)
+    here = bw.polar(airfoils[1], 1e6, 2.0, solver="neuralfoil", moment_point=0.1)
+    assert here.cl[0] == pytest.approx(0.9 * there.cl[0], rel=1e-3)
+    assert here.cd[0] == pytest.approx(0.9 * there.cd[0], rel=5e-3)
+    # its leading edge is at (0.1, 0.05): the force along x turns the nose up about a point below
+    angle = np.radians(2.0)
+    up = 0.05 * (here.cd[0] * np.cos(angle) - here.cl[0] * np.sin(angle))
+    assert here.cm[0] - 0.81 * there.cm[0] == pytest.approx(up, abs=2e-4)

@@ -38,11 +38,18 @@ def neuralfoil_columns(
         raise PolarError(MISSING)
     import neuralfoil
 
+    # a morphed airfoil is off its chord line: the network knows airfoils along the line from their farthest point
+    x, y = airfoil.points.T
+    outline = x + 1j * y
+    end = (outline[0] + outline[-1]) / 2.0
+    start = outline[np.argmax(np.hypot(x - end.real, y - end.imag))]
+    chord, turn = np.hypot((end - start).real, (end - start).imag), np.angle(end - start)
+    level = (outline - start) / (end - start)
     alpha = np.asarray(angles)
     found = neuralfoil.get_aero_from_coordinates(
-        airfoil.points,
-        alpha=alpha,
-        Re=conditions.reynolds,
+        np.stack([level.real, level.imag], axis=-1),
+        alpha=alpha - np.degrees(turn),
+        Re=conditions.reynolds * chord,
         n_crit=conditions.n_crit,
         xtr_upper=conditions.transition[0],
         xtr_lower=conditions.transition[1],
@@ -52,14 +59,16 @@ def neuralfoil_columns(
         np.broadcast_to(np.asarray(found[name], dtype=np.float64), alpha.shape)
         for name in ("CL", "CD", "CM", "Top_Xtr", "Bot_Xtr", "analysis_confidence")
     )
-    normal = cl * np.cos(np.radians(alpha)) + cd * np.sin(np.radians(alpha))
+    force = chord * (cd + 1j * cl) * np.exp(1j * np.radians(alpha))
+    arm = start + QUARTER * (end - start) - conditions.moment_point
+    nose_up = arm.imag * force.real - arm.real * force.imag
     return (
         f"NeuralFoil {metadata.version('neuralfoil')} {MODEL}",
         {
-            "cl": cl,
-            "cd": cd,
+            "cl": chord * cl,
+            "cd": chord * cd,
             "cdp": np.full(alpha.shape, np.nan),
-            "cm": cm + (conditions.moment_point - QUARTER) * normal,
+            "cm": chord**2 * cm + nose_up,
             "transition_upper": upper,
             "transition_lower": lower,
         },
