@@ -129,7 +129,7 @@ def test_every_member_of_a_front_is_an_optimum_and_nsga2_finds_none_better(secti
     for area, turning in evolved.table[:, :2]:
         assert area > np.interp(turning, front.table[:, 1], front.table[:, 0]) - 1e-3
     again = bw.optimise(section, variables, aims, [THICK], method="slsqp", members=3, manifest=tmp_path / "a.jsonl")
-    assert again.table == pytest.approx(front.table, rel=1e-9)
+    assert again.table == pytest.approx(front.table, rel=2e-6)  # rows count as held within 1e-6
 
 
 def study(folder: Path, optimise: str, variables: str = "stagger = { lower = -34, upper = -28 }") -> Path:

@@ -23,6 +23,8 @@ from bladewright.studies.problem import Problem
 
 ROUNDS = 6
 """Most rounds: two or three meet a tolerance of 1e-6, the more of them the less smooth the figures are."""
+WITHIN = 0.01
+"""Of the tolerance: where a round ends before scipy ends it, so that new knots leave room."""
 REFUSED = 1e3
 """What a refused design has as cost and as violation, in sizes: far more than any that can be built."""
 CHANGE = 1e-15
@@ -135,7 +137,7 @@ def least(
     program, spent, evaluations, refusal = Program(problem.renewed(x), aim, limits), 0, 0, ""
     found = program.optimality(x)
     for rounds in range(1, ROUNDS + 1):  # noqa: B007 - the last one is reported
-        end, used = _round(program, x, method, iterations, watch)
+        end, used = _round(program, x, method, iterations, tolerance, watch)
         spent, evaluations = spent + used, evaluations + program.evaluations
         refusal, moved = program.refusal, not np.array_equal(end, x)
         x, program = end, program.renewed(end)
@@ -153,20 +155,24 @@ def least(
     )
 
 
-class _RefusedError(Exception):
-    """A design that a round has accepted is refused."""
+class _EndedError(Exception):
+    """A round ends before scipy ends it: at an optimum, or because a design that it has accepted is refused."""
 
 
-def _round(program: Program, x: Reals, method: str, iterations: int, watch: Watch) -> tuple[Reals, int]:
-    """The vector that a round ends at, the number of iterations, and why a design was refused where it had to end."""
+def _round(
+    program: Program, x: Reals, method: str, iterations: int, tolerance: float, watch: Watch
+) -> tuple[Reals, int]:
+    """The vector that a round ends at, and the number of iterations."""
     accepted = [x]
 
     def slopes(x: Reals) -> tuple[Reals, Reals]:
         if program.values(x)[0] == REFUSED:
-            raise _RefusedError
+            raise _EndedError
         if not np.array_equal(accepted[-1], x):
             accepted.append(x.copy())
             watch(program.problem.figures(x))
+            if program.optimality(x).worst <= WITHIN * tolerance:
+                raise _EndedError
         return program.slopes(x)
 
     search = {"slsqp": _slsqp, "trust-constr": _trust_constr}[method]
@@ -176,7 +182,7 @@ def _round(program: Program, x: Reals, method: str, iterations: int, watch: Watc
             end = np.clip(search(program, x, slopes, iterations).x, 0.0, 1.0)
             if program.values(end)[0] < REFUSED:
                 accepted.append(end)
-        except _RefusedError:
+        except _EndedError:
             pass
     return accepted[-1], len(accepted) - 1
 

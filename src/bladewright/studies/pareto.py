@@ -18,6 +18,8 @@ from bladewright.studies.runs import Runs
 
 FEASIBLE = 1e-6
 """Largest violation of a constraint, in its size, that a member may have."""
+COLUMNS = 8
+"""Most figures that the text has a column for; of more, those of the aims alone."""
 SHOWN = 20
 """Most members that the text lists."""
 
@@ -147,10 +149,11 @@ class ParetoSet(Shown):
         words = " and ".join(f"{'most' if aim.maximise else 'least'} {aim.figure}" for aim in self.goals.aims)
         lines = [f"{self.name}: {len(self.members)} of {len(self.runs)} designs are Pareto optimal in {words}"]
         shown = self.members if len(self.members) <= SHOWN else self._spread()
-        rows = [["run", *self.headings, *(["KKT"] if self.optimality else [])]]
+        count = len(self._shown) if len(self._shown) <= COLUMNS else len(self.goals.aims)
+        rows = [["run", *self.headings[:count], *(["KKT"] if self.optimality else [])]]
         for number, figures in zip(shown, self._figures(shown), strict=True):
             kkt = [f"{self.optimality[number].worst:.1e}"] if number in self.optimality else []
-            rows.append([str(number), *(f"{value:.6g}" for value in figures), *kkt])
+            rows.append([str(number), *(f"{value:.6g}" for value in figures[:count]), *kkt])
         widths = [max(len(row[place]) for row in rows if place < len(row)) for place in range(len(rows[0]))]
         lines += ["  " + "  ".join(map(str.rjust, row, widths)) for row in rows]
         if len(shown) < len(self.members):
