@@ -176,4 +176,4 @@ def _difference(before: Mapping[str, Any], now: Mapping[str, Any]) -> str:
     name = differ[0]
     was, is_now = (json.dumps(each.get(name))[:120] for each in (before, now))
     short = f": {was} there, {is_now} here" if max(len(was), len(is_now)) <= 80 else ""
-    return f"its {' and '.join(differ)} {'is' if len(differ) == 1 else 'are'} not the same{short}"
+    return f"it differs in {' and '.join(differ)}{short}"

@@ -17,7 +17,7 @@ import numpy as np
 
 from bladewright.derivatives.quantities import AREAS, BLADE, OTHER_NAMES, SECTION, NamedQuantity
 from bladewright.designs import Design, unknown
-from bladewright.errors import StudyError
+from bladewright.errors import BladewrightError, StudyError
 from bladewright.numerics.elementary import Array
 from bladewright.section.checks import UNITS
 from bladewright.section.station_table import COLUMNS, IN_SPACE
@@ -42,9 +42,14 @@ class BuiltDesign:
         self._found: dict[Any, Any] = {}
 
     def once(self, key: Hashable, make: Callable[[], Any]) -> Any:
-        """What `make` gives, which is called but once for each key."""
+        """What `make` gives or raises, which is called but once for each key."""
         if key not in self._found:
-            self._found[key] = make()
+            try:
+                self._found[key] = make()
+            except BladewrightError as error:
+                self._found[key] = error
+        if isinstance(self._found[key], BladewrightError):
+            raise self._found[key]
         return self._found[key]
 
     def stations(self, span: float) -> Any:

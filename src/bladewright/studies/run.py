@@ -114,23 +114,25 @@ def built_designs(experiment: Experiment, parameters: Mapping[str, Any]) -> dict
 def measured(quantities: Sequence[Quantity], built: Mapping[str, BuiltDesign]) -> tuple[Figures, list[str]]:
     """The figures of a run by name, and why those are None that could not be found."""
     found: Figures = {}
-    problems: list[str] = []
+    problems: dict[str, list[str]] = {}
+    blank: list[str] = []
     for quantity in quantities:
         try:
             values = figures(quantity.of(built), quantity.name)
-            for name, value in values.items():
-                number = float(np.real(value))
-                found[name] = number if math.isfinite(number) else None
-                problems += [] if math.isfinite(number) else [f"{name} is {number}, no finite number"]
+            numbers = {name: float(np.real(value)) for name, value in values.items()}
         except TimeoutError:
             raise
         except BladewrightError as error:
             found[quantity.name] = None
-            problems.append(f"{quantity.name}: {_one_line(error)}")
+            problems.setdefault(_one_line(error), []).append(quantity.name)
         except Exception as error:  # noqa: BLE001 - a user's function may raise anything
             found[quantity.name] = None
-            problems.append(f"{quantity.name} raised {type(error).__name__}: {_one_line(error)}")
-    return found, problems
+            problems.setdefault(f"{type(error).__name__}: {_one_line(error)}", []).append(quantity.name)
+        else:
+            for name, number in numbers.items():
+                found[name] = number if math.isfinite(number) else None
+                blank += [] if math.isfinite(number) else [f"{name} is {number}, no finite number"]
+    return found, [*blank, *(f"{', '.join(names)}: {why}" for why, names in problems.items())]
 
 
 def _carry_out(experiment: Experiment, run: int, parameters: Mapping[str, Any], found: dict[str, Any]) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from difflib import get_close_matches
 from os import PathLike
 from pathlib import Path
@@ -180,7 +180,7 @@ def _unknown_key(loc: tuple[int | str, ...]) -> str:
         "constraints": Constraint,
     }
     kind = next((kinds[word] for word in reversed(table) if word in kinds), _File)
-    known = list(kind.__dataclass_fields__)
+    known = [each.name for each in fields(kind)]
     near = get_close_matches(str(key), known, n=1, cutoff=0.5)
     hint = f"did you mean '{near[0]}'?" if near else f"known are {', '.join(known)}"
     return f"{_path(loc)} does not exist; {hint}"
