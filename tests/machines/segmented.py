@@ -23,7 +23,7 @@ def side(sign, camber=0.0):
 
 REDUCED = Segmented(
     stagger_angle=5.0,
-    nose=Nose(angle=95.0, radius=0.0158),
+    nose=Nose(angle=5.0, radius=0.0158),
     trailing_edge_thickness=0.0025,
     upper=side(1.0, 0.02),
     lower=side(-1.0, 0.02),
@@ -49,7 +49,7 @@ MIXED = replace(
     REDUCED,
     partition=(0.28, 0.72),
     trailing_edge_thickness=None,
-    nose=Nose(angle=90.0),
+    nose=Nose(angle=0.0),
     upper=replace(
         REDUCED.upper,
         front_joint=SegmentJoint(height=0.077, angle=2.0),

@@ -15,6 +15,7 @@ from bladewright.errors import DesignError, FitError
 from bladewright.numerics.elementary import Array
 from bladewright.section.laws import is_list, law_points
 from bladewright.section.profiles.points import PointsProfile
+from bladewright.section.segmented.part import Segmented
 
 EDGES = ("leading_edge", "trailing_edge")
 """edge curves of a blade"""
@@ -32,9 +33,10 @@ def gauge_parameters(design: Design, *, walls: bool = False) -> frozenset[str]:
     Of any design they are those that say nothing of its blade: the metal's density, and what carries the blades.
     Of control points that count by their ratios only it is the largest. Of points of a contour it is the coordinate
     along which they slide on it, and both coordinates of the first and the last along the chord, as their size and
-    direction do not matter. Of a blade it is the flow path, which a blade shows by its ends only, and the coordinate
-    along which the points of its edge curves slide on the curve. Where the `walls` are free, only that coordinate of
-    the points of hub and shroud is held.
+    direction do not matter. Of a segmented airfoil it is the cuts, which are a choice, and where its chord line lies,
+    which its joints make up for. Of a blade it is the flow path, which a blade shows by its ends only, and the
+    coordinate along which the points of its edge curves slide on the curve. Where the `walls` are free, only that
+    coordinate of the points of hub and shroud is held.
     """
     beside = {path for path in design.parameters() if path.partition(".")[0] in BESIDE_THE_BLADE}
     return frozenset(beside) | _gauge_of_blade(design, walls=walls)
@@ -47,6 +49,9 @@ def _gauge_of_blade(design: Design, *, walls: bool) -> frozenset[str]:
     if section is None:
         return frozenset()
     found = {f"section.{path}" for path in _largest_curvature(section.parameters())}
+    if isinstance(section, Segmented):
+        held = ("section.partition", "section.stagger_angle", "leading_edge_y")
+        found |= {path for path in design.parameters() if path.startswith(held)}
     if isinstance(section, PointsProfile):
         found |= _along_contour(section)
     if isinstance(design, SectionedBlade):

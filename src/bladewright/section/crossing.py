@@ -60,8 +60,7 @@ def check_outline(outline: Outline, where: Sequence[str]) -> None:
         at = FINE[segment] if upper else FINE[max(outlines.shape[1] - segment, 0)]
         raise DesignError(
             f"the section{where[section]} {kind} on its {'upper' if upper else 'lower'} side near s = {at:.3f} (0 is "
-            "the leading, 1 the trailing edge): lower the thickness there, lower the curvature of the camber line "
-            "there, or lower an edge radius that is larger than the thickness beside it"
+            f"the leading, 1 the trailing edge): {outline.crossing_cure}"
         )
 
 

@@ -5,6 +5,7 @@ What a law is stands in `bladewright.designs`; everything that depends on its ki
 
 from collections.abc import Iterable, Iterator
 from dataclasses import fields, replace
+from functools import cache
 from itertools import pairwise
 from typing import Any, NamedTuple, get_args, get_origin, get_type_hints
 
@@ -148,7 +149,8 @@ def laws_of(part: Part) -> Iterator[Law]:
 
 def named_laws(part: Part) -> Iterator[tuple[str, Law]]:
     """The laws of evolution among the parameters of a part, each with its path in the part."""
-    hints = get_type_hints(type(part))
+    kind: Any = type(part)
+    hints = _hints(kind)
     for each in fields(part):
         value, hint = getattr(part, each.name), hints[each.name]
         if value is None:
@@ -159,6 +161,12 @@ def named_laws(part: Part) -> Iterator[tuple[str, Law]]:
             yield from ((f"{each.name}[{i}]", law) for i, law in enumerate(value))
         elif isinstance(value, Part):
             yield from ((f"{each.name}.{path}", law) for path, law in named_laws(value))
+
+
+@cache
+def _hints(kind: Any) -> dict[str, Any]:
+    """The types of a part's fields, which take longer to find than anything else of a change."""
+    return get_type_hints(kind)
 
 
 def check_plain(laws: Iterable[tuple[str, Law]]) -> None:

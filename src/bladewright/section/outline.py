@@ -102,6 +102,14 @@ class Outline(ABC):
         """s of the two cuts that part each side in leading edge, central box and trailing edge; None: not parted."""
         return None
 
+    @property
+    def crossing_cure(self) -> str:
+        """What helps where a section crosses itself or folds back."""
+        return (
+            "lower the thickness there, lower the curvature of the camber line there, or lower an edge radius that is "
+            "larger than the thickness beside it"
+        )
+
     @abstractmethod
     def points(self, s: Reals) -> tuple[Array, Array]:
         """Points (..., len(s), 2) of the upper and the lower side at s (k,) in [0, 1]."""

@@ -12,14 +12,17 @@ from bladewright.fitting.families import (
     curvature_meanline,
     part_laws,  # noqa: F401 - makes the laws of parts known
     profile,
+    segmented,
     suction_pressure,
     wedge_diffuser,
 )
 from bladewright.fitting.families.section_shape import SectionShape
+from bladewright.nurbs.basis import Reals
 from bladewright.section.camber_angle import CamberAngleSection
 from bladewright.section.curvature_meanline import CurvatureMeanlineSection
 from bladewright.section.planar import PlanarSection
 from bladewright.section.profiles.kinds import ProfileSection
+from bladewright.section.segmented.part import SegmentedSection
 from bladewright.section.suction_pressure.part import SuctionPressureSection
 from bladewright.section.wedge_diffuser import WedgeDiffuserSection
 
@@ -34,6 +37,9 @@ class FitFamily:
     """the parts nearest to a section: of the structure of a given part, or of every structure that is tried"""
     through_points: Callable[[SectionShape, int], Any] | None = None
     """the part through so many points of a section, where the family has one that follows any outline"""
+
+    contour_shape: Callable[[Reals], SectionShape | None] | None = None
+    """the section of points (n, 2) in order around it, where the family takes it from the points themselves"""
 
     @property
     def blade(self) -> type[SectionedBlade]:
@@ -55,6 +61,12 @@ FAMILIES = {
             section=ProfileSection,
             first_parts=profile.first_parts,
             through_points=profile.through_points,
+        ),
+        FitFamily(
+            name="segmented",
+            section=SegmentedSection,
+            first_parts=segmented.first_parts,
+            contour_shape=segmented.contour_shape,
         ),
     )
 }

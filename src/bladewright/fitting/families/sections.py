@@ -51,8 +51,13 @@ def matched_section(
         check_bounds(start, task.free(start), task.bounds)
         found, reason = selected_match(task, start, target, like=None, guessed=False)
         return buildable_tolerance(found), reason
-    closed = start or first_section(task.points, name=header.name, length_unit=header.length_unit)
-    shape = section_shape(closed.build())
+    shape = None if start is not None or kind.contour_shape is None else kind.contour_shape(task.points)
+    if shape is None:
+        closed = start or first_section(task.points, name=header.name, length_unit=header.length_unit)
+        shape = section_shape(closed.build())
+    else:
+        # a smooth contour through all points in order has no outliers
+        task = replace(task, allow_outliers=False)
     parts = kind.first_parts(shape, None if like is None else like.section)
     tried = compared(task.thinned(TRIAL_POINTS), designs_of(kind, shape, parts, header, task))
     structure = None if like is None else structure_of(like)

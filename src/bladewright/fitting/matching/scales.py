@@ -65,6 +65,7 @@ RANGE_BY_ENDING: tuple[tuple[str, RangeRule], ...] = (
     ("half_thickness", lambda _, largest: ParameterRange(max(0.5 * largest, 0.01), SMALLEST_LENGTH, 0.399)),
     ("thickness", lambda _, largest: ParameterRange(max(0.5 * largest, 0.01), SMALLEST_LENGTH, 0.99)),
     ("stretch", lambda *_: ParameterRange(0.3, 0.05, 19.9)),
+    ("scale", lambda *_: ParameterRange(0.3, 0.05, 19.9)),
     ("skew", lambda *_: ParameterRange(0.2, -0.95, 0.95)),
     ("ratio", lambda *_: ParameterRange(0.5, 0.05, 99.0)),
     ("places", lambda *_: ParameterRange(0.05, 1e-3, 1.0 - 1e-3)),

@@ -9,6 +9,8 @@ import numpy as np
 
 from bladewright.numerics.elementary import Array, radians
 from bladewright.section.laws import Span
+from bladewright.section.segmented.outline import SegmentedOutline
+from bladewright.section.segmented.part import Segmented
 from bladewright.section.suction_pressure.edges import MAX_OPENING, opening
 from bladewright.section.suction_pressure.limits import CHECKED_AT
 from bladewright.section.suction_pressure.part import SuctionPressure, edge_points, sides
@@ -24,6 +26,8 @@ def infeasibility(part: Any, span: Span) -> Array:
 
     Values above 0 violate the margin. Raises DesignError where the sections are refused already.
     """
+    if isinstance(part, Segmented):
+        return _turning_back(part.outline(span))
     if not isinstance(part, SuctionPressure):
         return np.zeros(0)
     edges = edge_points(part, span)
@@ -32,6 +36,19 @@ def infeasibility(part: Any, span: Span) -> Array:
         rows += [SLOWEST_PACE - side.own_parameter(end, CHECKED_AT, 1) for end in (0, 1)]
     shape = np.broadcast_shapes(*[each.shape[:-2] for each in rows])
     return np.concatenate([np.broadcast_to(each, (*shape, *each.shape[-2:])).reshape(*shape, -1) for each in rows], -1)
+
+
+def _turning_back(outline: SegmentedOutline) -> Array:
+    """By how much control points of segments lie ahead of the ones before them; those at the nose may (..., c)."""
+    rows = []
+    for side in outline.sides:
+        for number, controls in enumerate(side.controls):
+            x = controls[..., 2 if number == 0 else 0 :, 0]
+            rows.append(x[..., :-1] - x[..., 1:])
+    shape = np.broadcast_shapes(*[each.shape[:-1] for each in rows])
+    return np.concatenate(
+        [np.broadcast_to(each, (*shape, each.shape[-1])).reshape(*shape[:-1], -1) for each in rows], -1
+    )
 
 
 def _opening_excess(part: SuctionPressure, edge: str, span: Span) -> Array:

@@ -13,7 +13,6 @@ from bladewright.errors import DesignError
 from bladewright.numerics.elementary import dot
 from bladewright.section import checks
 from bladewright.section.laws import Span
-from bladewright.section.outline import Outline
 from bladewright.section.profiles.points_outline import PointsOutline, contour
 from bladewright.section.profiles.profile import Profile
 from bladewright.section.profiles.quintic_spline import DEGREE
@@ -58,7 +57,7 @@ class PointsProfile(Profile):
         """The points run around the contour."""
         return ()
 
-    def outline(self, span: Span) -> Outline:
+    def outline(self, span: Span) -> PointsOutline:
         """The exact sections (..., m) at the places of the span, in chords, unstaggered."""
         axes = [span.control_values(laws) for laws in (self.abscissas, self.ordinates)]
         points = np.stack(np.broadcast_arrays(*axes), axis=-1)

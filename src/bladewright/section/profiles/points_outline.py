@@ -299,7 +299,7 @@ class PointsOutline(Outline):
         return 0.5 * EDGE_SPEED * (magnitude(ways[0]) + magnitude(ways[1]))
 
     @cached_property
-    def _chord(self) -> tuple[Array, Array]:
+    def chord_line(self) -> tuple[Array, Array]:
         """The leading edge (..., 2), and the way to the trailing edge (..., 2)."""
         tips = []
         for at in ("start", "end"):
@@ -312,7 +312,7 @@ class PointsOutline(Outline):
 
     def _in_chords(self, side: SplineSide, s: Reals, order: int) -> tuple[Series, Series]:
         x, y = side.spline.at(side.parameter(variable(s, order), self._edge_speed))
-        start, way = self._chord
+        start, way = self.chord_line
         square = dot(way, way)[..., None]
         difference = x - start[..., 0, None], y - start[..., 1, None]
         cosine, sine = way[..., 0, None] / square, way[..., 1, None] / square

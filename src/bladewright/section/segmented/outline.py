@@ -108,6 +108,11 @@ class SegmentedOutline(Outline):
     def on_chord_line(self) -> bool:
         return not self.morphed
 
+    @property
+    def crossing_cure(self) -> str:
+        turned = "turn the edges by smaller angles of morph, or " if self.morphed else ""
+        return f"{turned}bring the inner control points and the scale factors of that segment nearer to its joints"
+
     def points(self, s: Reals) -> tuple[Array, Array]:
         upper, lower = (
             np.stack(np.broadcast_arrays(*(each.value for each in self._series(k, s, 0))), axis=-1) for k in (0, 1)

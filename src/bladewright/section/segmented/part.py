@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -72,7 +73,7 @@ class Segmented(Profile):
                 f"partition is {float(np.real(front).flat[0]):g}, {float(np.real(rear).flat[0]):g}: the front cut must "
                 "lie ahead of the rear one"
             )
-        upper, lower = (_side(self, sign, (front, rear), span) for sign in (1.0, -1.0))
+        upper, lower = (_side(self, sign, span) for sign in (1.0, -1.0))
         if self.morph is not None:
             upper, lower = morphed(self.morph, upper, lower, span)
         return SegmentedOutline(
@@ -108,18 +109,12 @@ def _check(path: str, segment: Segment, front: _Given, rear: _Given) -> None:
         )
 
 
-def _side(part: Segmented, sign: float, partition: tuple[Array, Array], span: Span) -> SegmentedSide:
+def _side(part: Segmented, sign: float, span: Span) -> SegmentedSide:
     """The upper (1) or the lower side (-1)."""
     side = part.upper if sign > 0.0 else part.lower
-    half = 0.0 if part.trailing_edge_thickness is None else 0.5 * span.values(part.trailing_edge_thickness)
-    zero = 0.0 * partition[0]
-    joints = [
-        _End(_points(zero, zero), *_vectors_at_nose(part.nose, sign, span)),
-        *(_at_joint(joint, x, span) for joint, x in zip((side.front_joint, side.rear_joint), partition, strict=True)),
-        _End(_points(1.0 + zero, sign * half + zero), None, None),
-    ]
+    joints = side_joints(part, sign, span)
     controls, speeds = [], []
-    for name, front, rear in zip(SEGMENTS, joints, joints[1:], strict=False):
+    for name, (front, rear) in zip(SEGMENTS, pairwise(joints), strict=True):
         segment: Segment = getattr(side, name)
         distance = length(rear.point - front.point)
         scales = [
@@ -138,7 +133,9 @@ def _side(part: Segmented, sign: float, partition: tuple[Array, Array], span: Sp
 
 
 @dataclass(frozen=True, eq=False)
-class _End:
+class JointVectors:
+    """What is given at a joint of a side, in chords."""
+
     point: Array
     """(..., m, 2)"""
     direction: Array | None
@@ -156,20 +153,34 @@ class _End:
         return SegmentEnd(point=self.point, tangent=distance[..., None] * self.direction, curvature=bend, scale=scale)
 
 
+def side_joints(part: Segmented, sign: float, span: Span) -> list[JointVectors]:
+    """The four joints of the upper (1) or the lower side (-1), from the leading to the trailing edge."""
+    side = part.upper if sign > 0.0 else part.lower
+    half = 0.0 if part.trailing_edge_thickness is None else 0.5 * span.values(part.trailing_edge_thickness)
+    front, rear = (span.values(each) for each in part.partition)
+    zero = 0.0 * front
+    return [
+        JointVectors(_points(zero, zero), *_vectors_at_nose(part.nose, sign, span)),
+        _at_joint(side.front_joint, front, span),
+        _at_joint(side.rear_joint, rear, span),
+        JointVectors(_points(1.0 + zero, sign * half + zero), None, None),
+    ]
+
+
 def _vectors_at_nose(nose: Nose | None, sign: float, span: Span) -> tuple[Array | None, Array | None]:
     if nose is None or nose.angle is None:
         return None, None
     angle = radians(span.values(nose.angle))
-    direction = sign * _points(np.cos(angle), np.sin(angle))
+    direction = sign * turned_left(_points(np.cos(angle), np.sin(angle)))
     return direction, None if nose.radius is None else -sign / span.values(nose.radius)
 
 
-def _at_joint(joint: SegmentJoint, x: Array, span: Span) -> _End:
+def _at_joint(joint: SegmentJoint, x: Array, span: Span) -> JointVectors:
     point = _points(x, span.values(joint.height))
     if joint.angle is None:
-        return _End(point, None, None)
+        return JointVectors(point, None, None)
     angle = radians(span.values(joint.angle))
-    return _End(
+    return JointVectors(
         point, _points(np.cos(angle), np.sin(angle)), None if joint.curvature is None else span.values(joint.curvature)
     )
 

@@ -10,7 +10,6 @@ from bladewright.errors import DesignError
 from bladewright.section import checks
 
 ANGLE = Limits(-90.0, 90.0, "an angle must lie between -90 and 90 deg")
-NOSE = Limits(0.0, 180.0, "the angle of the nose must lie between 0 and 180 deg; 90 is square to the chord line")
 RADIUS = Limits(0.0, 10.0, "a radius must lie above 0 and below 10 chords")
 CURVATURE = Limits(-1e4, 1e4, "a curvature must lie between -1e4 and 1e4 over the chord")
 POSITION = Limits(-10.0, 10.0, "it must lie between -10 and 10 chords")
@@ -23,8 +22,9 @@ class Nose(Part):
 
     inline: ClassVar[bool] = True
 
-    angle: Law | None = parameter("deg", limits=NOSE, default=None)
-    """angle from the chord line at which the upper side leaves the leading edge; none: a corner [deg]"""
+    angle: Law | None = parameter("deg", limits=ANGLE, default=None)
+    """direction of the camber line at the leading edge, square to the outline there, from the chord line; none: a
+    corner [deg]"""
     radius: Law | None = parameter("-", limits=RADIUS, default=None)
     """radius of the leading edge, of the chord; none: the curvature jumps there [-]"""
 
