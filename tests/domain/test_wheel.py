@@ -90,6 +90,16 @@ def test_a_rim_ends_as_far_past_a_trimmed_edge_as_is_stated():
     np.testing.assert_allclose(np.hypot(*(line.at(ends) - [first, last]).T), [1.5e-3, 1e-3], rtol=1e-3)
 
 
+def test_a_rim_ends_as_far_past_a_cut_edge_with_a_fillet_too():
+    cut, rim = Cut(trailing_edge=AtX(x=60.0)), Disc(thickness=2.0, upstream=3.0, downstream=2.0)
+    blade = with_parts(coarse.ROTOR, cut=cut, disc=rim, hub_fillet=Fillet(radius=1.5))
+    (pitch,) = sector(blade).pitches
+    line, ends = pitch.carrier.line, np.array(pitch.carrier.ends)
+    last = line.at(np.array(line.blade[1]))
+    assert last[0] == pytest.approx(60e-3, rel=1e-7)
+    assert np.hypot(*(line.at(ends[1]) - last)) == pytest.approx(2e-3, rel=1e-3)
+
+
 def test_an_outline_stays_where_it_is_stated_when_the_blade_is_trimmed(shrouded):
     blade = replace(shrouded.design, cut=Cut(trailing_edge=AtRadius(radius=66.0))).build()
     disc, ring = wheel(blade).pitches

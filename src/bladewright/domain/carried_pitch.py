@@ -186,7 +186,7 @@ def _wall_line(skin: Skin, kind: Kind) -> WallLine:
     line = WallLine(
         curve=skin.periodic_line(kind.wall, 0), blade=(first, last), meridian=wall.meridian, joints=wall.inner
     )
-    corners = blade.sides[0].control_points[:, 0 if kind.wall == "hub" else -1]
+    corners = blade.unfilleted.sides[0].control_points[:, 0 if kind.wall == "hub" else -1]
     if "leading_edge" in blade.walls:
         first = line.beside(corners[0])
     if "trailing_edge" in blade.walls:

@@ -124,6 +124,12 @@ class Blade(FrozenRecord, Shown, MetalBody):
         return self if self.before is None else self.before.plain
 
     @property
+    def unfilleted(self) -> Blade:
+        """The blade before fillets, whose sides reach its walls: itself, where there are none."""
+        filleted = self.design.hub_fillet is not None or self.design.shroud_fillet is not None
+        return self.before if filleted and self.before is not None else self
+
+    @property
     def edge_kinds(self) -> tuple[str, str]:
         """How the sides meet at the leading and at the trailing edge: "round", "sharp" or "blunt", as a cut edge is."""
         kinds = zip(EDGES, self.plain.exact.survey.edge_kinds, strict=True)
