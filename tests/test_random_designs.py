@@ -16,6 +16,8 @@ KINDS = {
     ("sections", 2): "refused",
     ("sections", 3): "built",
     ("sections", 5): "refused",
+    # its fillet folds between the first places that are looked at
+    ("parts", 92): "refused",
 }
 """of designs by their seeds: refused for different reasons, or built, with a passage that fills its ring"""
 

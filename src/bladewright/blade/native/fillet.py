@@ -18,6 +18,7 @@ from bladewright.blade.native.closed_section import FACES, ClosedSection, Sectio
 from bladewright.blade.native.contacts import Wall
 from bladewright.blade.native.end_faces import EndKnots, Near, WallSurface, end_row, end_within, stretch_about
 from bladewright.blade.native.fillet_knots import FilletKnots, chosen_knots, levels
+from bladewright.blade.native.fillet_limits import check_folds
 from bladewright.blade.native.knots import DEGREE, Knots
 from bladewright.blade.native.lazy_faces import Face, LazyFaces
 from bladewright.blade.native.native_edges import with_native_edges
@@ -52,6 +53,8 @@ def filleted(blade: Blade, design: RowDesign, knots: Knots | None = None, *, fin
     held = knots if isinstance(knots, FilletKnots) else None
     own = chosen_knots(whole, section, balls, fine=fine) if held is None else held
     rolled = Rolled.at(section, balls, cast(SectionSplines, own.splines).sites, own.near)
+    if held is None:
+        check_folds(whole, balls, rolled)
     faces, outlines, feet = cut_sides(section, own), dict(whole.outlines), {}
     for wall, touch in rolled.touches.items():
         pivots = own.turning(wall, touch)

@@ -82,6 +82,12 @@ def check_fillets(blade: Blade, balls: Mapping[str, Ball], rolled: Rolled) -> No
     raise DesignError(f"{_asked(design, wall, sizes[wall])}: {at_high.reason}; {cure}")
 
 
+def check_folds(blade: Blade, balls: Mapping[str, Ball], rolled: Rolled) -> None:
+    """Raise DesignError, as above, where a fillet folds between the places that were looked at first."""
+    if any(_folding(blade, wall, touch) for wall, touch in rolled.touches.items()):
+        check_fillets(blade, balls, rolled)
+
+
 def named(design: RowDesign, sizes: list[Reals], share: float) -> str:
     """The largest radius that holds, as a share of that which is asked for."""
     if _constant(sizes):
