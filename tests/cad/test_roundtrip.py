@@ -16,7 +16,8 @@ from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
 
 from bladewright import cad
 from bladewright.cad.solids import occ_solid
-from bladewright.cad.verification import limits_of
+from bladewright.cad.verification import AREA_LIMIT, limits_of, rounded_area
+from bladewright.nurbs.measure import area
 from bladewright.nurbs.surface import Surface
 
 SEARCHED = 1000
@@ -33,6 +34,16 @@ def foreign_step(shape, path):
     writer = STEPControl_Writer()
     assert writer.Transfer(shape, STEPControl_AsIs) == IFSelect_RetDone
     assert writer.Write(str(path)) == IFSelect_RetDone
+
+
+def test_a_files_digits_may_move_the_area_of_a_narrow_face_by_what_is_allowed():
+    along, across = np.meshgrid(np.linspace(0.0, 8.0, 6), np.linspace(0.0, 0.05, 6), indexing="ij")
+    net = np.stack([180.0 + across + 0.3 * along, along, 1353.0 + across * along], axis=-1) / 3.0 + [0.0, 0.0, 902.0]
+    clamped = np.repeat([0.0, 1.0], 6)
+    narrow = Surface(control_points=net, knots_u=clamped, knots_v=clamped, degree_u=5, degree_v=5)
+    written = Surface(control_points=np.round(net, 9), knots_u=clamped, knots_v=clamped, degree_u=5, degree_v=5)
+    off = abs(float(area(written)) - float(area(narrow)))
+    assert AREA_LIMIT * float(area(narrow)) < off < rounded_area(net)
 
 
 @pytest.mark.parametrize("ending", SIDE)
