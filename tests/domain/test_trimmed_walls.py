@@ -4,6 +4,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+import random_parts
 
 from bladewright.blade.design.fillet import Fillet
 from bladewright.domain.build import passage
@@ -168,3 +169,14 @@ def test_poles_and_volumes_follow_the_parameters(name, path):
     # Richardson's step leaves an error of the fourth power of the step, and rounding over it
     found = (4.0 * difference(1e-3) - difference(2e-3)) / 3.0
     np.testing.assert_allclose(found, exact, rtol=0, atol=1e-6 * np.max(np.abs(exact)))
+
+
+def test_passages_fill_the_ring_where_the_middle_surface_twists_by_half_a_turn():
+    made = passage(random_parts.random_design(389).plain.build())
+    edge = (
+        made.surfaces["inlet"](np.linspace(0.0, 1.0, 101), 0.5),
+        made.surfaces["inlet"](0.5, np.linspace(0.0, 1.0, 101)),
+    )
+    twist = [np.ptp(np.unwrap(np.arctan2(line[:, 1], line[:, 2]))) for line in edge]
+    assert max(twist) > np.pi
+    assert abs(made.ring_error) < 1e-8

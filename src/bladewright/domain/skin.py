@@ -40,6 +40,8 @@ from bladewright.nurbs.trimmed import TrimmedSurface
 SPAN_PLACES = 17
 """Points of each knot span of a curve whose parameters on a wall are found by search; between them they are
 interpolated and polished."""
+EDGE_PLACES = 101
+"""Places along the leading edge, from hub to shroud, by which theta is followed: 3 deg apart where it winds a turn."""
 MERIDIAN_POINTS = 2001
 """Points of a wall's meridian among which that search looks for the nearest, before Newton's method."""
 OVERHANG = 0.02
@@ -297,10 +299,19 @@ def skin_moments(skin: Skin, faces: Mapping[str, Surface | TrimmedSurface], outw
     """
     hub = skin.walls["hub"]
     middle = 0.5 * (hub.low + hub.high)
-    lines = [_near(wall, _row(skin.middle, name)) for name, wall in skin.walls.items()]
     low, high = BLADE_AT
-    around = float(np.mean([theta[(at >= low) & (at <= high)].mean() for at, _, theta in lines]))
-    whole = float(np.mean([theta.mean() for _, _, theta in lines]))
+    (at, _, on_hub), (beyond, _, on_shroud) = (
+        _near(wall, _row(skin.middle, name)) for name, wall in skin.walls.items()
+    )
+    if skin.duct.revolved:
+        # walls have their own turns: one may be a turn from where the middle surface goes from the other
+        edge = np.real(skin.middle(low, np.linspace(0.0, 1.0, EDGE_PLACES)))
+        across = np.unwrap(angle(edge[:, 1], edge[:, 2]))
+        reached = np.interp(low, at, on_hub) + across[-1] - across[0]
+        on_shroud = on_shroud + 2.0 * np.pi * np.round((reached - np.interp(low, beyond, on_shroud)) / (2.0 * np.pi))
+    lines = (at, on_hub), (beyond, on_shroud)
+    around = float(np.mean([theta[(at >= low) & (at <= high)].mean() for at, theta in lines]))
+    whole = float(np.mean([theta.mean() for _, theta in lines]))
     total: Array = np.zeros(MOMENTS)
     for name, face in faces.items():
         if isinstance(face, Surface):
