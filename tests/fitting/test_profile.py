@@ -1,14 +1,14 @@
 """Profiles fitted by camber and half thickness."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 
 import bladewright as bw
-from bladewright.fitting.freeform.camber_thickness import CamberThickness, abscissae_of
-from bladewright.fitting.freeform.least_squares import Penalty
-from bladewright.fitting.freeform.profile_objective import ProfileObjective
+from bladewright.fitting.freeform.profile_shape import CamberThickness, abscissae_of
+from bladewright.fitting.freeform.search import Problem, Target, placed
 from bladewright.nurbs.basis import uniform_knots
 
 KNOTS = uniform_knots(6, 3)
@@ -32,7 +32,7 @@ def profile(*, round_end):
 def contour(of, count=70):
     t = np.linspace(0.0, 1.0, count) ** 2
     upper = np.repeat([True, False], count)
-    return of.derivatives(np.tile(t, 2), upper=upper)[0], upper
+    return np.concatenate([of.along(t)[0], of.along(np.minimum(-t, -1e-300))[0]]), upper
 
 
 @pytest.mark.parametrize("trailing_edge", ["blunt", "round"])
@@ -66,22 +66,23 @@ def test_abscissae_stand_where_the_source_puts_them():
 @pytest.mark.parametrize("round_end", [False, True])
 def test_the_gradient_is_that_of_central_differences(fixed, round_end):
     of = profile(round_end=round_end)
-    points, upper = contour(of, 30)
+    points, _ = contour(of, 30)
     points = points + 0.003 * np.random.default_rng(0).normal(size=points.shape)
-    search = ProfileObjective(points=points, upper=upper, fixed=fixed, penalty=Penalty(), stiffness=1e-3, profile=of)
-    at, step = search.unknowns, 1e-6
-    exact = search.objective(at).gradient
-    for k, e in enumerate(np.eye(len(at))):
-        found = (search.objective(at + step * e).value - search.objective(at - step * e).value) / (4 * step)
-        # rounding of a value over the step
-        assert found == pytest.approx(exact[k], rel=1e-6, abs=1e-9)
+    target = Target(points=points, weights=np.ones(len(points)))
+    problem = Problem(placed(replace(of, fixed=fixed), target), stiffness=1e-3)
+    exact = problem.derivatives(problem.start)[0].T @ problem.values(problem.start)[0]
+    step = 1e-6
+    for k, e in enumerate(np.eye(len(exact))):
+        ahead, behind = (problem.values(problem.start + way * step * e)[0] for way in (1.0, -1.0))
+        # rounding of a cost over the step
+        assert (ahead @ ahead - behind @ behind) / (4 * step) == pytest.approx(exact[k], rel=1e-6, abs=1e-8)
 
 
 def test_derivatives_along_a_side_are_those_of_central_differences():
     of, t, step = profile(round_end=True), np.linspace(0.05, 0.95, 19), 1e-5
-    for upper in (True, False):
-        _, first, second = of.derivatives(t, upper=upper)
-        ahead, behind = of.derivatives(t + step, upper=upper), of.derivatives(t - step, upper=upper)
+    for u in (t, -t):
+        _, first, second = of.along(u)
+        ahead, behind = of.along(u + step), of.along(u - step)
         for order, exact in ((0, first), (1, second)):
             # the third derivative times the step squared
             np.testing.assert_allclose((ahead[order] - behind[order]) / (2 * step), exact, atol=1e-5)
@@ -89,15 +90,15 @@ def test_derivatives_along_a_side_are_those_of_central_differences():
 
 def test_the_leading_edge_is_round():
     of, t = profile(round_end=False), np.array([1e-7])
-    ends = [of.derivatives(t, upper=side) for side in (True, False)]
+    ends = [of.along(t), of.along(-t)]
     bend = [
         float((first[0, 0] * second[0, 1] - first[0, 1] * second[0, 0]) / np.sum(first[0] ** 2) ** 1.5)
         for _, first, second in ends
     ]
-    # both sides leave along the camber's normal with one curvature, whose signs differ as one side runs backwards
-    assert bend[0] == pytest.approx(-bend[1], rel=1e-4)
+    # one side goes on as the other, along the camber's normal and with one curvature
+    assert bend[0] == pytest.approx(bend[1], rel=1e-4)
     np.testing.assert_allclose(
-        ends[0][1] / np.sqrt(np.sum(ends[0][1] ** 2)), -ends[1][1] / np.sqrt(np.sum(ends[1][1] ** 2)), atol=1e-4
+        ends[0][1] / np.sqrt(np.sum(ends[0][1] ** 2)), ends[1][1] / np.sqrt(np.sum(ends[1][1] ** 2)), atol=1e-4
     )
 
 

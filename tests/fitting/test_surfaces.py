@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 import bladewright as bw
-from bladewright.fitting.freeform.least_squares import Penalty
-from bladewright.fitting.freeform.net import Net, NetObjective, NetTarget
-from bladewright.fitting.freeform.projection import projected
+from bladewright.fitting.freeform.net import Net
+from bladewright.fitting.freeform.search import Problem, Target, placed
 from bladewright.nurbs.basis import uniform_knots
 from bladewright.nurbs.closest import closest_on_surface
 
@@ -89,18 +88,14 @@ def test_the_gradient_is_that_of_central_differences(weighted):
         log_weights=0.2 * rng.normal(size=20) if weighted else None,
         weighted=weighted,
     )
-    points = net.surface(U[:60], V[:60]) + 0.02 * rng.normal(size=(60, 3))
-    search = NetObjective(
-        net=net, target=NetTarget(points=points, weights=np.ones(60)), penalty=Penalty(), stiffness=1e-3,
-        near=projected(net.shape, points).parameters,
-    )  # fmt: skip
-    at, step = net.unknowns, 1e-6
-    exact = search.objective(at)
-    search.accept()
-    for e in rng.normal(size=(8, len(at))):
-        found = (search.objective(at + step * e).value - search.objective(at - step * e).value) / (4 * step)
-        # rounding of a value over the step
-        assert found == pytest.approx(exact.gradient @ e, rel=1e-6, abs=1e-9)
+    points = net.shape(U[:60], V[:60]) + 0.02 * rng.normal(size=(60, 3))
+    problem = Problem(placed(net, Target(points=points, weights=np.ones(60))), stiffness=1e-3)
+    exact = problem.derivatives(problem.start)[0].T @ problem.values(problem.start)[0]
+    step = 1e-6
+    for e in rng.normal(size=(8, len(problem.start))):
+        ahead, behind = (problem.values(problem.start + way * step * e)[0] for way in (1.0, -1.0))
+        # rounding of a cost over the step
+        assert (ahead @ ahead - behind @ behind) / (4 * step) == pytest.approx(exact @ e, rel=1e-6, abs=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -80,10 +80,12 @@ def constrained_minimum(
     steps: int,
     damping: float = FIRST_DAMPING,
     min_reduction: float = MIN_REDUCTION,
+    accelerated: bool = True,
 ) -> ConstrainedMinimum:
     """The variables after at most `steps` evaluations of the residuals.
 
-    `min_reduction` is the predicted relative reduction of the cost up to which a step is not worth it.
+    `min_reduction` is the predicted relative reduction of the cost up to which a step is not worth it. Steps that are
+    `accelerated` follow second derivatives, which are to be smooth: places of points that cross an edge make them jump.
     """
     low, high = problem.bounds
     z = np.clip(start, low, high)
@@ -94,8 +96,7 @@ def constrained_minimum(
     penalty, growth, gain, done = 0.0, 2.0, 1.0, 1
     while done < steps:
         slopes, constraint_slopes = problem.derivatives(z)
-        orthogonal, matrix = np.linalg.qr(slopes)  # real: residuals of measured points
-        rhs = -orthogonal.T @ residuals
+        matrix, rhs = _reduced(slopes, -residuals)
         scale = float(np.max(np.sum(slopes**2, axis=0), initial=1e-300))
         sizes = np.sqrt(np.sum(slopes**2, axis=0) + damping * scale)
         moved = False
@@ -119,9 +120,9 @@ def constrained_minimum(
             )
             if not predicted > min_reduction * before:
                 return ConstrainedMinimum(z=z, converged=True, damping=damping)
-            bend = _second_derivative(problem, z, step, residuals, slopes) if gain < GOOD_GAIN else None
+            bend = _second_derivative(problem, z, step, residuals, slopes) if accelerated and gain < GOOD_GAIN else None
             if bend is not None:
-                curved, _ = _step(matrix, rhs - 0.5 * orthogonal.T @ bend, *within)
+                curved, _ = _step(matrix, _reduced(slopes, -residuals - 0.5 * bend)[1], *within)
                 if np.sum(((curved - step) * sizes) ** 2) <= LARGEST_BEND**2 * np.sum((step * sizes) ** 2):
                     step = curved
             trial = np.clip(z + step, low, high)
@@ -143,6 +144,13 @@ def constrained_minimum(
         if not moved:
             break
     return ConstrainedMinimum(z=z, converged=False, damping=damping)
+
+
+def _reduced(slopes: Reals, rhs: Reals) -> tuple[Reals, Reals]:
+    """The triangle (k, k) of slopes (m, k), and the right side (k,) that has the same least-squares problem."""
+    count = slopes.shape[1]
+    found = np.asarray(np.linalg.qr(np.column_stack([slopes, rhs]), mode="r"))  # real: residuals of measured points
+    return found[:count, :count], found[:count, count]
 
 
 def _second_derivative(

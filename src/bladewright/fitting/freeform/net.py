@@ -1,4 +1,6 @@
-"""A NURBS curve or surface as a vector of unknowns, and its match to points."""
+"""A NURBS curve or surface as a function of its unknowns."""
+
+from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -6,36 +8,33 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import null_space
-from scipy.sparse import csr_array, hstack
+from scipy.sparse import csr_array
 
-from bladewright.fitting.freeform.least_squares import Minimum, Penalty, Quadratic, minimised, quadratic_of_distances
-from bladewright.fitting.freeform.projection import Projections, certified_parameters, projected
+from bladewright.errors import FitError
+from bladewright.fitting.freeform.search import Shape
 from bladewright.numerics.quadrature import panels
 from bladewright.nurbs.basis import Reals, basis, breaks
 from bladewright.nurbs.blossom import knot_change
+from bladewright.nurbs.closest import Descents, Places
 from bladewright.nurbs.collocation import collocation
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.refine import Direction, inserted
 from bladewright.nurbs.surface import Surface
 
-LARGEST_LOG_WEIGHT = 30.0
-"""magnitude of a weight's logarithm beyond which it changes nothing more."""
 TENSION = 0.01
 """weight of squared first derivatives, of that of squared second ones: it holds stretches that leave the points."""
 WEIGHT_REGULARISATION = 1e-10
 """cost of a unit of a weight's logarithm, in extents of the points: it holds weights without effect."""
+LAST_STEP = 1e-10
+"""last step of a descent, in the parameters of a patch: distances of exact points are exact to it."""
 DIRECTIONS: tuple[Direction, Direction] = ("u", "v")
 """names of the directions of a surface"""
-AT_ONCE = 100_000
-"""points whose rows are built at a time; it bounds the memory."""
-GLOBAL_SEARCHES = 8
-"""searches for places that are nearer than the ones descended to, at most"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Net:
+class Net(Shape):
     """Control points and weights of a curve or surface, some of them unknown."""
 
     knots: tuple[Reals, ...]
@@ -67,26 +66,26 @@ class Net:
         return (np.concatenate([np.full(degree, period[0]), period, np.full(degree, period[-1])]),)
 
     @cached_property
-    def spread(self) -> Reals | None:
-        """(m, N) matrix from the control points of a closed curve to those of the clamped one; None for open shapes."""
+    def spread(self) -> Reals:
+        """(m, N) matrix from the control points to those of the clamped shape, which a closed curve has more of."""
         if not self.closed:
-            return None
+            return np.eye(len(self.points))
         period, degree, count = self.knots[0], self.degrees[0], len(self.points)
         whole = period[-1] - period[0]
         around = np.concatenate([period[:-1] + turn * whole for turn in range(-degree - 1, degree + 2)])
         first = int(np.searchsorted(around, period[0])) - degree
         knots = around[first : first + count + 2 * degree + 1]
-        wrapped = np.eye(count)[np.arange(count + degree) % count]
-        return np.asarray(knot_change(knots, degree, self.clamped[0]) @ wrapped)
+        return np.asarray(
+            knot_change(knots, degree, self.clamped[0]) @ np.eye(count)[np.arange(count + degree) % count]
+        )
 
     @cached_property
     def free(self) -> NDArray[np.bool_]:
         """(N,) which control points move."""
-        ends = [np.isin(np.arange(count), (0, count - 1)) for count in self.counts]
         if self.held == "none" or self.closed:
             return np.ones(len(self.points), dtype=bool)
-        grids = np.meshgrid(*ends, indexing="ij")
-        return ~np.logical_and.reduce(grids).ravel() if self.held == "corners" else ~np.logical_or.reduce(grids).ravel()
+        ends = np.meshgrid(*[np.isin(np.arange(count), (0, count - 1)) for count in self.counts], indexing="ij")
+        return ~(np.logical_and if self.held == "corners" else np.logical_or).reduce(ends).ravel()
 
     @cached_property
     def gauge(self) -> Reals:
@@ -98,41 +97,59 @@ class Net:
         if not self.weighted:
             return np.zeros((len(self.points), 0))
         index = np.meshgrid(*[np.arange(count, dtype=float) for count in self.counts], indexing="ij")
-        null_rows = [np.ones(len(self.points))]
+        alike = [np.ones(len(self.points))]
         for along, knots in zip(index, self.knots, strict=True):
             if len(breaks(knots)) == 2 and not self.closed:
-                null_rows.append(along.ravel())
-        return np.asarray(null_space(np.array(null_rows)))
+                alike.append(along.ravel())
+        return np.asarray(null_space(np.array(alike)))
 
     @cached_property
-    def bending(self) -> Reals:
-        """(N, N) matrix of the integral of all squared second derivatives by the parameters, and some of the first.
+    def bending_root(self) -> Reals:
+        """(b, N) matrix whose product with the control points has the bending as its sum of squares.
 
-        The second are the bending; without the first, a stretch that leaves the points would cost nothing.
+        The bending is the integral of all squared second derivatives by the parameters (the thin-plate energy: Duchon
+        1977), and some of the first: without it, a stretch that leaves the points would cost nothing.
         """
-        parts = [_products(knots, degree) for knots, degree in zip(self.clamped, self.degrees, strict=True)]
-        if len(parts) == 1:
-            found = TENSION * parts[0][1] + parts[0][2]
-            return found if self.spread is None else np.asarray(self.spread.T @ found @ self.spread)
-        (mass_u, slope_u, bend_u), (mass_v, slope_v, bend_v) = parts
-        bending = np.kron(bend_u, mass_v) + 2.0 * np.kron(slope_u, slope_v) + np.kron(mass_u, bend_v)
-        return np.asarray(bending + TENSION * (np.kron(slope_u, mass_v) + np.kron(mass_u, slope_v)))
+        mass, slope, bend = zip(
+            *(_products(knots, degree) for knots, degree in zip(self.clamped, self.degrees, strict=True)), strict=True
+        )
+        if len(mass) == 1:
+            energy = bend[0] + TENSION * slope[0]
+        else:
+            energy = np.kron(bend[0], mass[1]) + 2.0 * np.kron(slope[0], slope[1]) + np.kron(mass[0], bend[1])
+            energy += TENSION * (np.kron(slope[0], mass[1]) + np.kron(mass[0], slope[1]))
+        values, vectors = np.linalg.eigh(self.spread.T @ energy @ self.spread)
+        return np.asarray(np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T)
 
     @property
     def unknowns(self) -> Reals:
-        """Values of the unknowns: control points that move, then changes of the logarithms of the weights."""
-        return np.concatenate([self.points[self.free].ravel(), np.zeros(self.gauge.shape[1])])
+        """Control points that move, then what changes the shape of the logarithms of the weights."""
+        logs = np.zeros(len(self.points)) if self.log_weights is None else self.log_weights
+        return np.concatenate([self.points[self.free].ravel(), self.gauge.T @ logs])
 
     @property
+    def freed(self) -> Net:
+        """The net with unknown weights."""
+        logs = np.zeros(len(self.points)) if self.log_weights is None else self.log_weights
+        return replace(self, weighted=True, log_weights=logs)
+
+    def changed(self, unknowns: Reals) -> Net:
+        """The net with other values of its unknowns."""
+        points, logs = self.points.copy(), self.log_weights
+        moved = int(self.free.sum()) * points.shape[1]
+        points[self.free] = unknowns[:moved].reshape(-1, points.shape[1])
+        if logs is not None and self.weighted:
+            logs = logs + self.gauge @ (unknowns[moved:] - self.gauge.T @ logs)
+        return replace(self, points=points, log_weights=logs)
+
+    @cached_property
     def shape(self) -> Curve | Surface:
         """The curve or surface."""
-        points, weights = self.points, None if self.log_weights is None else np.exp(self.log_weights)
-        if self.spread is not None:
-            if weights is None:
-                points = self.spread @ points
-            else:
-                total = self.spread @ weights
-                points, weights = (self.spread @ (weights[:, None] * points)) / total[:, None], total
+        points, weights = self.spread @ self.points, None
+        if self.log_weights is not None:
+            own = np.exp(self.log_weights)
+            weights = self.spread @ own
+            points = (self.spread @ (own[:, None] * self.points)) / weights[:, None]
         if len(self.knots) == 1:
             return Curve(control_points=points, knots=self.clamped[0], degree=self.degrees[0], weights=weights)
         return Surface(
@@ -145,212 +162,110 @@ class Net:
         )
 
     @property
-    def curve(self) -> Curve:
-        """The shape of one direction."""
-        shape = self.shape
-        assert isinstance(shape, Curve)  # noqa: S101 - one direction
-        return shape
+    def domain(self) -> Reals:
+        """(2, k) lowest and highest parameters."""
+        return np.array([[knots[0] for knots in self.clamped], [knots[-1] for knots in self.clamped]])
 
-    @property
-    def surface(self) -> Surface:
-        """The shape of two directions."""
-        shape = self.shape
-        assert isinstance(shape, Surface)  # noqa: S101 - two directions
-        return shape
+    def nearest(self, points: Reals, near: Reals | None = None) -> Reals:
+        """Parameters (m, k) of the nearest places of points (m, d); a closed curve has no ends to be held at."""
+        search = Descents((self.shape,))
 
-    def changed(self, unknowns: Reals) -> "Net":
-        """The net with other values of its unknowns."""
-        points = self.points.copy()
-        moved = int(self.free.sum()) * points.shape[1]
-        points[self.free] = unknowns[:moved].reshape(-1, points.shape[1])
-        log_weights = self.log_weights
-        if self.weighted:
-            log_weights = (0.0 if log_weights is None else log_weights) + self.gauge @ unknowns[moved:]
-            log_weights = np.clip(log_weights, -LARGEST_LOG_WEIGHT, LARGEST_LOG_WEIGHT)
-        return replace(self, points=points, log_weights=log_weights)
+        def places(rows: Reals) -> Places:
+            return Places(shape=np.zeros(len(rows), dtype=np.intp), u=rows[:, 0], v=rows[:, -1])
 
-    def through(self, points: Reals, parameters: Reals, stiffness: float) -> "Net":
-        """The net nearest to points (m, d) at parameters (m, k), with a weight of its bending."""
-        matrix = self.basis(parameters)
-        normal = (matrix.T @ matrix).toarray() / len(points)
-        # a trace of the identity holds control points that neither points nor bending determine
-        normal += stiffness * self.bending + 1e-14 * np.eye(len(normal))
-        return replace(self, points=np.linalg.solve(normal, np.asarray(matrix.T @ points) / len(points)))
-
-    def refined(self, knots: Sequence[float], direction: int = 0) -> "Net":
-        """The same shape with further knots."""
-        every = list(self.knots)
-        every[direction] = np.sort(np.concatenate([every[direction], knots]))
-        finer = replace(self, knots=tuple(every))
+        found = search.nearest(points, None if near is None else places(near), converged=LAST_STEP)
+        parameters = np.stack([found.u, found.v], axis=-1)[:, : len(self.knots)]
         if self.closed:
-            return replace(periodic(finer, inserted(self.curve, knots)), weighted=self.weighted)
-        shape = inserted(self.curve, knots) if len(every) == 1 else inserted(self.surface, knots, DIRECTIONS[direction])
-        log_weights = None if shape.weights is None else np.log(shape.weights).ravel()
-        return replace(finer, points=shape.control_points.reshape(-1, self.points.shape[1]), log_weights=log_weights)
+            low, high = self.domain
+            seam = np.flatnonzero((found.u <= low) | (found.u >= high))
+            past = search.nearest(points[seam], places(low + high - parameters[seam]), converged=LAST_STEP)
+            parameters[seam, 0] = np.where(past.square < found.square[seam], past.u, found.u[seam])
+        return parameters
+
+    def tangents(self, parameters: Reals) -> tuple[Reals, Reals, NDArray[np.bool_]]:
+        """Places (m, d), tangents (m, k, d), and along which of them (m, k) a place is free to move."""
+        low, high = self.domain
+        free = (parameters > low) & (parameters < high) | self.closed
+        if isinstance(self.shape, Curve):
+            places, tangent = self.shape.derivatives(parameters[:, 0], 1)
+            return places, tangent[:, None], free
+        of = self.shape.derivatives(parameters[:, 0], parameters[:, 1], 1)
+        return of[0, 0], np.stack([of[1, 0], of[0, 1]], axis=1), free
 
     def basis(self, parameters: Reals) -> csr_array:
         """(m, N) matrix whose product with the control points are the places at parameters (m, k)."""
         matrix = collocation(self.shape, *parameters.T)
-        if self.spread is not None:
+        if self.closed:
             matrix = csr_array(matrix @ csr_array(self.spread))
         if self.log_weights is None:
             return matrix
         scaled = csr_array(matrix * np.exp(self.log_weights)[None, :])
         return csr_array(scaled * (1.0 / scaled.sum(axis=1))[:, None])
 
-    def rows(self, matrix: csr_array, places: Reals, directions: Reals) -> csr_array:
-        """(m, n) derivatives by the unknowns of places (m, d) along directions (m, d); `matrix` is their basis."""
-        dimension = directions.shape[1]
-        of = np.repeat(np.arange(matrix.shape[0]), np.diff(matrix.indptr))
-        values = (matrix.data[:, None] * directions[of]).ravel()
-        columns = (matrix.indices[:, None] * dimension + np.arange(dimension)).ravel()
-        found = csr_array(
-            (values, columns, matrix.indptr * dimension), shape=(matrix.shape[0], matrix.shape[1] * dimension)
-        )
-        if not self.free.all():
-            found = csr_array(found[:, np.repeat(self.free, dimension)])
+    def slopes(self, parameters: Reals, directions: Reals) -> Reals:
+        """Derivatives (r, n) by the unknowns of places at held parameters (r, k), along directions (r, d)."""
+        matrix = self.basis(parameters).toarray()
+        moved = (matrix[:, self.free, None] * directions[:, None]).reshape(len(matrix), -1)
         if not self.weighted:
-            return found
+            return moved
         # dC / d log w_i = R_i (P_i - C)
-        away = np.einsum("kd,kd->k", directions[of], self.points[matrix.indices] - places[of])
-        by_log = csr_array((matrix.data * away, matrix.indices, matrix.indptr), shape=matrix.shape)
-        return csr_array(hstack([found, csr_array(by_log @ self.gauge)], format="csr"))
+        away = directions @ self.points.T - np.sum(directions * (matrix @ self.points), axis=-1, keepdims=True)
+        return np.concatenate([moved, (matrix * away) @ self.gauge], axis=1)
+
+    def bending(self, stiffness: float) -> tuple[Reals, Reals]:
+        """Residuals (b,) whose squares are the bending, times its weight, and their derivatives (b, n)."""
+        root = np.sqrt(stiffness) * self.bending_root if stiffness else np.zeros((0, len(self.points)))
+        logs, dimension = self.unknowns[int(self.free.sum()) * self.points.shape[1] :], self.points.shape[1]
+        slopes = np.zeros((len(root) * dimension + len(logs), int(self.free.sum()) * dimension + len(logs)))
+        slopes[: len(root) * dimension, : slopes.shape[1] - len(logs)] = np.kron(root[:, self.free], np.eye(dimension))
+        slopes[len(root) * dimension :, slopes.shape[1] - len(logs) :] = WEIGHT_REGULARISATION * np.eye(len(logs))
+        return np.concatenate([(root @ self.points).ravel(), WEIGHT_REGULARISATION * logs]), slopes
+
+    def through(self, points: Reals, shares: Reals, stiffness: float) -> Net:
+        """The net nearest to points (m, d) at shares (m, k) of the domain, with a weight of its bending."""
+        low, high = self.domain
+        matrix = self.basis(low + (high - low) * shares)
+        normal = (matrix.T @ matrix).toarray() / len(points) + stiffness * self.bending_root.T @ self.bending_root
+        # a trace of the identity holds control points that neither points nor bending determine
+        normal += 1e-14 * np.eye(len(normal))
+        return replace(self, points=np.linalg.solve(normal, np.asarray(matrix.T @ points) / len(points)))
+
+    def refined(self, knots: Sequence[float], direction: int = 0) -> Net:
+        """The same shape with further knots."""
+        every = list(self.knots)
+        every[direction] = np.sort(np.concatenate([every[direction], knots]))
+        along = DIRECTIONS[direction]
+        shape = inserted(self.shape, knots) if isinstance(self.shape, Curve) else inserted(self.shape, knots, along)
+        finer = net_of(shape, closed=self.closed, knots=tuple(every))
+        return replace(finer, held=self.held, weighted=self.weighted)
 
 
-def periodic(net: Net, curve: Curve) -> Net:
-    """The closed net nearest to a curve that closes, on the distinct knots of `net`."""
-    dimension, knots = curve.control_points.shape[1], breaks(net.knots[0])
-    empty = Net(knots=(knots,), degrees=net.degrees, points=np.zeros((len(knots) - 1, dimension)), closed=True)
-    once: Reals = np.linalg.lstsq(np.asarray(empty.spread), curve.homogeneous, rcond=None)[0]
-    if curve.weights is None:
-        return replace(empty, points=once)
-    return replace(empty, points=once[:, :dimension] / once[:, dimension:], log_weights=np.log(once[:, dimension]))
+def net_of(shape: Curve | Surface, *, closed: bool = False, knots: tuple[Reals, ...] = ()) -> Net:
+    """A curve or surface as a net; of a closed curve the nearest on its distinct knots."""
+    homogeneous = shape.homogeneous.reshape(-1, shape.homogeneous.shape[-1])
+    dimension, weighted = shape.control_points.shape[-1], shape.weights is not None
+    degrees: tuple[int, ...]
+    own: tuple[Reals, ...]
+    if isinstance(shape, Curve):
+        degrees, own = (shape.degree,), (breaks(shape.knots) if closed else shape.knots,)
+    else:
+        degrees, own = (shape.degree_u, shape.degree_v), (shape.knots_u, shape.knots_v)
+    if closed:
+        empty = Net(knots=knots or own, degrees=degrees, points=np.zeros((len(own[0]) - 1, dimension)), closed=True)
+        homogeneous = np.linalg.lstsq(empty.spread, homogeneous, rcond=None)[0]
+    points = homogeneous[:, :dimension] / (homogeneous[:, dimension:] if weighted else 1.0)
+    logs = np.log(homogeneous[:, dimension]) if weighted else None
+    return Net(knots=knots or own, degrees=degrees, points=points, log_weights=logs, closed=closed)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class NetMatch:
-    """A net matched to points."""
-
-    net: Net
-    footpoints: Projections
-    data: Quadratic
-    """objective of the distances alone, without bending"""
-    evaluations: int
-    converged: bool
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class NetTarget:
-    """Points (m, d) of unit extent, how much each counts (m,), and those whose parameters are held."""
-
-    points: Reals
-    weights: Reals
-    held: tuple[NDArray[np.intp], Reals] | None = None
-
-
-def matched_net(
-    net: Net,
-    target: NetTarget,
-    *,
-    penalty: Penalty,
-    stiffness: float = 0.0,
-    near: Reals | None = None,
-    evaluations: int = 80,
-    tolerance: float = 1e-8,
-    certain: bool = False,
-) -> NetMatch:
-    """The net at which the penalties of true distances, and `stiffness` times its bending, are least.
-
-    Places follow the shape by descent while it moves; after that they are searched for from samples everywhere, on a
-    curve with `certain` by bounds as well (on a surface that takes milliseconds a point), and the whole is repeated
-    where a nearer one is found.
-    """
-    places = projected(net.shape, target.points, closed=net.closed).parameters if near is None else near
-    total, converged = 0, False
-    for _ in range(GLOBAL_SEARCHES):
-        search = NetObjective(net=net, target=target, penalty=penalty, stiffness=stiffness, near=places)
-        found: Minimum = minimised(
-            search.objective, net.unknowns, accepted=search.accept, evaluations=evaluations, tolerance=tolerance
-        )
-        total += found.evaluations
-        net, converged = net.changed(found.x), found.converged
-        footpoints = search.footpoints(net, search.near)
-        everywhere = projected(net.shape, target.points, None, closed=net.closed, held=target.held)
-        nearer = everywhere.distances < footpoints.distances - 1e-8
-        places = np.where(nearer[:, None], everywhere.parameters, footpoints.parameters)
-        if certain and not nearer.any() and len(net.knots) == 1:
-            places = certified_parameters(net.curve, target.points, footpoints)
-        if np.array_equal(places, footpoints.parameters):
-            break
-    footpoints = search.footpoints(net, footpoints.parameters)
-    return NetMatch(
-        net=net,
-        footpoints=footpoints,
-        data=quadratic_of(net, target, footpoints, penalty),
-        evaluations=total,
-        converged=converged,
-    )
-
-
-def quadratic_of(net: Net, target: NetTarget, footpoints: Projections, penalty: Penalty) -> Quadratic:
-    """The objective of distances alone near the present unknowns."""
-    total: Quadratic | None = None
-    for first in range(0, len(footpoints.points), AT_ONCE):
-        rows = slice(first, first + AT_ONCE)
-        in_block = np.flatnonzero((footpoints.across_of >= first) & (footpoints.across_of < first + AT_ONCE))
-        across_of = footpoints.across_of[in_block] - first
-        matrix = net.basis(footpoints.parameters[rows])
-        places = footpoints.points[rows]
-        part = quadratic_of_distances(
-            net.rows(matrix, places, footpoints.along[rows]),
-            footpoints.distances[rows],
-            net.rows(csr_array(matrix[across_of]), places[across_of], footpoints.across[in_block]),
-            across_of,
-            penalty,
-            target.weights[rows],
-        )
-        total = part if total is None else total + part
-    assert total is not None  # noqa: S101 - a target has points
-    return total
-
-
-class NetObjective:
-    """The objective of one descent, which keeps the places of the current unknowns."""
-
-    def __init__(self, *, net: Net, target: NetTarget, penalty: Penalty, stiffness: float, near: Reals) -> None:
-        self.net, self.target, self.penalty, self.stiffness = net, target, penalty, stiffness
-        self.near = self.tried = near
-
-    def accept(self) -> None:
-        self.near = self.tried
-
-    def footpoints(self, net: Net, near: Reals) -> Projections:
-        return projected(net.shape, self.target.points, near, closed=net.closed, held=self.target.held)
-
-    def objective(self, unknowns: Reals) -> Quadratic:
-        net = self.net.changed(unknowns)
-        footpoints = self.footpoints(net, self.near)
-        self.tried = footpoints.parameters
-        return quadratic_of(net, self.target, footpoints, self.penalty) + self._of_net(net)
-
-    def _of_net(self, net: Net) -> Quadratic:
-        dimension, free = net.points.shape[1], net.free
-        moved = int(free.sum()) * dimension
-        size = moved + net.gauge.shape[1]
-        value, gradient, curvature = 0.0, np.zeros(size), np.zeros((size, size))
-        scale = float(self.target.weights.sum())
-        if self.stiffness:
-            pull = self.stiffness * scale * (net.bending @ net.points)
-            value += float(np.sum(pull * net.points))
-            gradient[:moved] = pull[free].ravel()
-            block = self.stiffness * scale * net.bending[np.ix_(free, free)]
-            curvature[:moved, :moved] = np.kron(block, np.eye(dimension))
-        if net.weighted and net.log_weights is not None:
-            own = net.gauge.T @ net.log_weights
-            value += WEIGHT_REGULARISATION**2 * scale * float(own @ own)
-            gradient[moved:] += WEIGHT_REGULARISATION**2 * scale * own
-            curvature[moved:, moved:] += WEIGHT_REGULARISATION**2 * scale * np.eye(len(own))
-        return Quadratic(value=value, gradient=gradient, curvature=curvature)
+def log_weights(weights: str | ArrayLike, counts: tuple[int, ...]) -> Reals | None:
+    """Logarithms of given weights of a shape (n,) or (n_u, n_v), flattened; None for a word."""
+    if isinstance(weights, str):
+        return None
+    given = np.array(weights, dtype=np.float64)
+    if given.shape != counts or not (given > 0.0).all():
+        raise FitError(f"weights of shape {given.shape} were given: positive ones of shape {counts} are needed")
+    return np.log(given).ravel()
 
 
 def _products(knots: Reals, degree: int) -> tuple[Reals, Reals, Reals]:

@@ -6,6 +6,8 @@ from scipy.spatial import cKDTree
 from scipy.spatial.distance import cdist
 
 from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.closest import Descents
+from bladewright.nurbs.curve import Curve
 
 GRID_CELLS = 150
 """cells along the extent of the points in which neighbours become one, so that noise does not fold the path."""
@@ -15,8 +17,6 @@ IN_ORDER_SHARE = 0.9
 """share of points whose nearest point is next to them in the list, from which the list is an order."""
 LONGEST_DETOUR = 3.0
 """length of the way through the list, of the length through the tree, from which the list is no order."""
-PLACES_PER_PIECE = 8
-"""places on a piece of the path among which the nearest is sought"""
 
 
 def sites_along(points: Reals, *, closed: bool) -> Reals:
@@ -32,26 +32,14 @@ def sites_along(points: Reals, *, closed: bool) -> Reals:
         path, sites = points, np.concatenate([[0.0], np.cumsum(own)])
         whole = sites[-1] + (np.sqrt(np.sum((points[0] - points[-1]) ** 2)) if closed else 0.0)
         return np.asarray(sites / whole)
-    if closed:
-        path = np.concatenate([path, path[:1]])
-    steps = np.sqrt(np.sum(np.diff(path, axis=0) ** 2, axis=-1))
-    ends = np.concatenate([[0.0], np.cumsum(steps)])
-    share = np.linspace(0.0, 1.0, PLACES_PER_PIECE, endpoint=False)
-    fine = np.concatenate(
-        [(path[:-1, None] + share[:, None] * np.diff(path, axis=0)[:, None]).reshape(-1, path.shape[1]), path[-1:]]
-    )
-    places = np.append((ends[:-1, None] + share * steps[:, None]).ravel(), ends[-1])
-    _, nearest = cKDTree(fine).query(points)
-    sites = places[nearest]
     # the outermost points lie past the path's ends, which are means of cells
-    if not closed:
-        for end, inner, sign in ((0, 1, -1.0), (-1, -2, 1.0)):
-            tangent = path[end] - path[inner]
-            rows = np.flatnonzero(sites == places[end])
-            beyond = (points[rows] - path[end]) @ tangent / np.sqrt(tangent @ tangent)
-            sites[rows] += sign * np.maximum(beyond, 0.0)
-    low = sites.min() if not closed else 0.0
-    high = sites.max() if not closed else ends[-1]
+    path = np.concatenate(
+        [path, path[:1]] if closed else [2.0 * path[:1] - path[1:2], path, 2.0 * path[-1:] - path[-2:-1]]
+    )
+    ends = np.concatenate([[0.0], np.cumsum(np.sqrt(np.sum(np.diff(path, axis=0) ** 2, axis=-1)))])
+    line = Curve(control_points=path, knots=np.concatenate([ends[:1], ends, ends[-1:]]), degree=1)
+    sites = Descents((line,)).nearest(points).u
+    low, high = (0.0, ends[-1]) if closed else (sites.min(), sites.max())
     return np.asarray((sites - low) / (high - low))
 
 

@@ -11,28 +11,21 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import ConvexHull, QhullError
 
 from bladewright.errors import FitError
-from bladewright.fitting.freeform.camber_thickness import CamberThickness, abscissae_of
-from bladewright.fitting.freeform.curves import noise_along
-from bladewright.fitting.freeform.least_squares import (
-    Penalty,
-    minimised,
-    rank_of,
-    singular_values,
+from bladewright.fitting.freeform.fits import (
+    FreeformFit,
+    checked_ends,
+    checked_options,
+    checked_points,
+    figures_of,
+    unit_of,
 )
 from bladewright.fitting.freeform.net import Net
-from bladewright.fitting.freeform.options import FreeformFit, checked_options, checked_points
-from bladewright.fitting.freeform.profile_objective import DEGREE, ProfileObjective
-from bladewright.fitting.freeform.projection import Projections
-from bladewright.fitting.freeform.stages import FitOptions
+from bladewright.fitting.freeform.profile_shape import DEGREE, CamberThickness, abscissae_of
+from bladewright.fitting.freeform.search import Target, matched_by_stages
 from bladewright.numerics.elementary import length, turned_left
 from bladewright.nurbs.basis import Reals, uniform_knots
-from bladewright.nurbs.closest import Descents
 from bladewright.nurbs.curve import Curve
 
-STIFFNESSES = (1e-3, 1e-5, 1e-7, 1e-9)
-"""weights of the bending of camber and thickness, in extents of the points squared, in turn"""
-SIDE_TURNS = 6
-"""times that points are assigned to the sides"""
 CHORD_BINS = 40
 """parts of the chord by whose outermost points a first profile is drawn"""
 
@@ -53,8 +46,11 @@ class ProfileFit(FreeformFit):
 
     def side(self, t: ArrayLike, *, upper: bool) -> Reals:
         """Points (m, 2) of a side at parameters t (m,) of the thickness, leading edge at 0."""
-        found = CamberThickness(camber=self.camber, thickness=self.thickness)
-        return found.derivatives(np.atleast_1d(np.asarray(t, dtype=np.float64)), upper=upper)[0]
+        at = np.atleast_1d(np.asarray(t, dtype=np.float64))
+        # the smallest number below zero is the leading edge of the lower side
+        return CamberThickness(camber=self.camber, thickness=self.thickness).along(
+            at if upper else -np.maximum(at, 1e-300)
+        )[0]
 
 
 def fit_profile(
@@ -84,75 +80,41 @@ def fit_profile(
     off along the camber's normals.
     """
     given = checked_points(points, "a profile", (2,))
+    unit = unit_of(given)
+    pair, scaled = checked_ends(ends, unit), unit.scaled(given)
+    options = checked_options(
+        weights="fixed", power=power, robust=False, tolerance=tolerance, extent=unit.extent, progress=progress
+    )
 
     def fitted(camber: int, thickness: int) -> ProfileFit:
-        _check(given, camber, thickness, ends, trailing_edge)
-        extent = float(np.ptp(given, axis=0).max())
-        options = checked_options(
-            weights="free", power=power, robust=False, tolerance=tolerance, extent=extent, progress=progress
+        _check(given, camber, thickness, trailing_edge)
+        start, upper = _start(scaled, camber, thickness, round_end=trailing_edge == "round")
+        if pair is not None:
+            moved = start.unknowns
+            moved[:2], moved[2 * camber - 2 : 2 * camber] = pair
+            start = start.changed(moved)
+        free = isinstance(ends, str) and ends == "free"
+        # a blunt edge that stands out of its points costs nothing, so that its end is freed last
+        blunt = trailing_edge == "blunt"
+        start = replace(start, fixed=blunt or not free)
+        counts = np.where(upper, np.sum(upper), np.sum(~upper))
+        target = Target(points=scaled, weights=0.5 * len(scaled) / counts)
+        match, inliers = matched_by_stages(start, target, options)
+        if blunt and free:
+            match, inliers = matched_by_stages(replace(match.shape, fixed=False), target, options, warm=True)
+        parameters, figures = figures_of(match, inliers, scaled, unit.extent)
+        of = match.shape
+        heights = of.thickness.control_points * unit.extent + np.array([unit.centre[0], 0.0])
+        return ProfileFit(
+            camber=replace(of.camber, control_points=unit.restored(of.camber.control_points)),
+            thickness=replace(of.thickness, control_points=heights),
+            upper=parameters[:, 0] >= 0.0,
+            t=np.abs(parameters[:, 0]),
+            tolerance=tolerance,
+            **figures,
         )
-        return _fitted(given, camber, thickness, ends, options, round_end=trailing_edge == "round", tolerance=tolerance)
 
     return fitted(camber, thickness) if tolerance is None else _within_tolerance(fitted, camber, thickness, tolerance)
-
-
-def _fitted(
-    given: Reals,
-    camber: int,
-    thickness: int,
-    ends: str | tuple[ArrayLike, ArrayLike],
-    options: FitOptions,
-    *,
-    round_end: bool,
-    tolerance: float | None,
-) -> ProfileFit:
-    """The fit with so many control points."""
-    centre, extent, power = np.mean(given, axis=0), options.extent, options.power
-    scaled = (given - centre) / extent
-    start, upper = _start(scaled, camber, thickness, round_end=round_end)
-    if not isinstance(ends, str):
-        pair = (np.array(ends, dtype=np.float64) - centre) / extent
-        start = start.between(pair)
-    fixed = not (isinstance(ends, str) and ends == "free")
-    profile, evaluations, converged = start, 0, False
-    search = ProfileObjective(points=scaled, upper=upper, fixed=fixed, penalty=Penalty(), stiffness=0.0, profile=start)
-    for stiffness in (*STIFFNESSES, STIFFNESSES[-1]):
-        options.report(f"stiffness {stiffness:g}")
-        search = replace(search, stiffness=stiffness, profile=profile, upper=_upper(profile, scaled))
-        found = minimised(search.objective, search.unknowns, evaluations=60, tolerance=1e-6)
-        profile, converged = search.changed(found.x), found.converged
-        evaluations += found.evaluations
-    for _ in range(SIDE_TURNS):
-        upper = _upper(profile, scaled)
-        scale = float(search.footpoints(profile).distances.max())
-        penalty = Penalty(power=power, scale=scale) if power != 2.0 else Penalty()
-        search = replace(search, stiffness=1e-12, profile=profile, upper=upper, penalty=penalty)
-        found = minimised(search.objective, search.unknowns, evaluations=100, tolerance=1e-8)
-        profile, converged = search.changed(found.x), found.converged
-        evaluations += found.evaluations
-        if np.array_equal(_upper(profile, scaled), upper):
-            break
-    search = replace(search, profile=profile)
-    footpoints = search.footpoints(profile)
-    values = singular_values(search.of_distances(profile, footpoints).curvature)
-    stretch = np.array([extent, extent])
-    return ProfileFit(
-        camber=replace(profile.camber, control_points=profile.camber.control_points * extent + centre),
-        thickness=replace(
-            profile.thickness, control_points=profile.thickness.control_points * stretch + np.array([centre[0], 0.0])
-        ),
-        upper=search.upper,
-        t=footpoints.parameters[:, 0],
-        distances=footpoints.distances * extent,
-        inliers=np.ones(len(given), dtype=bool),
-        iterations=evaluations,
-        converged=converged,
-        singular_values=values,
-        rank=rank_of(values),
-        noise=_noise(footpoints, scaled, search.upper) * extent,
-        tolerance=tolerance,
-        notes=(),
-    )
 
 
 def _start(points: Reals, camber: int, thickness: int, *, round_end: bool) -> tuple[CamberThickness, NDArray[np.bool_]]:
@@ -200,28 +162,9 @@ def _start(points: Reals, camber: int, thickness: int, *, round_end: bool) -> tu
     return profile, eta > middle(np.clip(xi, 0.0, 1.0))
 
 
-def _upper(profile: CamberThickness, points: Reals) -> NDArray[np.bool_]:
-    """Which points lie above the camber, which is continued straight past its ends."""
-    s = Descents((profile.camber,)).nearest(points).u
-    place, tangent = profile.camber.derivatives(s, 1)
-    return np.asarray(np.sum((points - place) * turned_left(tangent), axis=-1) > 0.0)
-
-
-def _noise(footpoints: Projections, points: Reals, upper: NDArray[np.bool_]) -> float:
-    squares = []
-    for side in (True, False):
-        rows = upper == side
-        squares.append(
-            rows.sum() * noise_along(footpoints.parameters[rows, 0], (footpoints.points - points)[rows]) ** 2
-        )
-    return float(np.sqrt(sum(squares) / len(points)))
-
-
-def _check(points: Reals, camber: int, thickness: int, ends: object, trailing_edge: str) -> None:
+def _check(points: Reals, camber: int, thickness: int, trailing_edge: str) -> None:
     if trailing_edge not in ("blunt", "round"):
         raise FitError(f"trailing edge {trailing_edge!r} is unknown: `blunt` or `round`")
-    if isinstance(ends, str) and ends not in ("fixed", "free"):
-        raise FitError(f"ends {ends!r} are unknown: `fixed`, `free`, or the first and the last point of the camber")
     least = 6 if trailing_edge == "round" else 5
     if camber < DEGREE + 1 or thickness < least:
         raise FitError(

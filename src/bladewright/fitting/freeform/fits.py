@@ -1,15 +1,16 @@
-"""What fits of plain curves, surfaces and profiles have in common: their options, and the figures they hand back."""
+"""Fits of plain curves, surfaces and profiles: what is asked of them, and the figures that they hand back."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bladewright.errors import FitError
-from bladewright.fitting.freeform.stages import FitOptions
+from bladewright.fitting.freeform.search import Options, S, ShapeMatch, Target, placed
 from bladewright.nurbs.basis import Reals
 
 
@@ -76,6 +77,56 @@ class FreeformFit:
         return self.converged and (self.tolerance is None or self.maximum <= self.tolerance)
 
 
+@dataclass(frozen=True, kw_only=True)
+class Unit:
+    """The unit in which points are fitted: about their mean, in their largest extent."""
+
+    centre: Reals
+    extent: float
+
+    def scaled(self, points: ArrayLike) -> Reals:
+        """Points (..., d) in extents about the centre."""
+        return np.asarray((np.asarray(points, dtype=np.float64) - self.centre) / self.extent)
+
+    def restored(self, points: Reals) -> Reals:
+        """Points (..., d) in their own unit."""
+        return points * self.extent + self.centre
+
+
+def unit_of(points: Reals) -> Unit:
+    """The unit of points (n, d)."""
+    return Unit(centre=np.mean(points, axis=0), extent=float(np.ptp(points, axis=0).max()))
+
+
+def figures_of(
+    match: ShapeMatch[S], inliers: NDArray[np.bool_], points: Reals, extent: float, *notes: str
+) -> tuple[Reals, dict[str, Any]]:
+    """Parameters (n, k) of the nearest places of all points (n, d), and the figures of the fit."""
+    final = placed(match.shape, Target(points=points, weights=np.ones(len(points))))
+    parameters = final.parameters.copy()
+    nearer = match.distances < final.distances[inliers]
+    parameters[np.flatnonzero(inliers)[nearer]] = match.parameters[nearer]
+    final = replace(final, parameters=parameters)
+    values = match.singular_values
+    if match.rank < len(values):
+        notes += (
+            (
+                f"the points determine {match.rank} of {len(values)} directions of the unknowns: the others bend the "
+                "shape as little as they can"
+            ),
+        )
+    return parameters, {
+        "distances": final.distances * extent,
+        "inliers": inliers,
+        "iterations": match.evaluations,
+        "converged": match.converged,
+        "singular_values": values,
+        "rank": match.rank,
+        "noise": match.noise * extent,
+        "notes": notes,
+    }
+
+
 def checked_options(
     *,
     weights: object,
@@ -84,7 +135,7 @@ def checked_options(
     tolerance: float | None,
     extent: float,
     progress: Callable[[str], None] | None,
-) -> FitOptions:
+) -> Options:
     """The options of a fit to points of an extent; FitError where one is unknown or out of its limits."""
     if isinstance(weights, str) and weights not in ("fixed", "free"):
         raise FitError(f"weights {weights!r} are unknown: `fixed` (all one), `free`, or positive numbers")
@@ -94,24 +145,29 @@ def checked_options(
         )
     if tolerance is not None and not tolerance > 0.0:
         raise FitError(f"a tolerance of {tolerance} was asked for: it must be positive")
-    return FitOptions(
+    return Options(
         power=power,
         weights_free=isinstance(weights, str) and weights == "free",
         robust=robust,
-        limit=None if tolerance is None else tolerance / extent,
+        tolerance=tolerance,
         extent=extent,
-        progress=progress,
+        report=progress or (lambda _: None),
     )
 
 
-def checked_logs(weights: str | ArrayLike, counts: tuple[int, ...]) -> Reals | None:
-    """Logarithms of given weights of a shape (n,) or (n_u, n_v), flattened; None for a word."""
-    if isinstance(weights, str):
-        return None
-    given = np.array(weights, dtype=np.float64)
-    if given.shape != counts or not (given > 0.0).all():
-        raise FitError(f"weights of shape {given.shape} were given: positive ones of shape {counts} are needed")
-    return np.log(given).ravel()
+def checked_ends(ends: Any, unit: Unit) -> Reals | None:
+    """Two ends (2, d) that are given, in the unit of a fit; None for a word. Raises FitError."""
+    if isinstance(ends, str):
+        if ends in ("fixed", "free"):
+            return None
+        raise FitError(f"ends {ends!r} are unknown: `fixed`, `free`, or the first and the last point")
+    try:
+        pair = np.array(ends, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise FitError(f"ends {ends!r} were given: `fixed`, `free`, or the first and the last point") from error
+    if pair.shape != (2, len(unit.centre)) or not np.isfinite(pair).all():
+        raise FitError(f"ends of shape {pair.shape} were given: two finite points of {len(unit.centre)} coordinates")
+    return unit.scaled(pair)
 
 
 def checked_points(points: ArrayLike, what: str, dimensions: tuple[int, ...] = ()) -> Reals:
