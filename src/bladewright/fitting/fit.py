@@ -64,6 +64,8 @@ INTERRUPTED_NOTE = (
     "builds in a moment: lower it for finer surfaces"
 )
 """note on a blade that a search had found when it was interrupted"""
+INTERRUPTED_POINTS = 20_000
+"""points, drawn at random, that an interrupted match is measured by: half a second, where a million take 26 s"""
 WHOLE_BLADE_HINT = "is it one whole blade, with both sides and both edges? If so, give a start design or bounds"
 """what to check where no design was found"""
 Progress = Callable[[str], None]
@@ -159,6 +161,10 @@ def fit(
         if nearest is None:
             raise
         found, built, reason = *nearest, INTERRUPTED_NOTE if points.shape[1] == 3 else ""
+        if len(points) > INTERRUPTED_POINTS:
+            notes = (*notes, f"measured by {INTERRUPTED_POINTS} of {len(points)} points, drawn at random")
+            task = task.thinned(INTERRUPTED_POINTS)
+            points = task.points
     except DesignError as error:
         raise FitError(f"no design of the family was found near the points ({error}): {WHOLE_BLADE_HINT}") from error
     if (
