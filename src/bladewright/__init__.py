@@ -21,7 +21,7 @@ Parts of them    CurvatureMeanline, SuctionPressure, CamberAngle, WedgeDiffuser
 Laws by values   Stations
 Thickness laws   ModifiedNaca, QuarticSpline, Wennerstrom
 Profiles         Naca4, Naca5, Naca6, Naca65, C4, DoubleCircularArc, MultipleCircularArc, FlatPlate, PointsProfile,
-                 Segmented of AirfoilSide, Segment, SegmentJoint, Nose and Morph
+                 Segmented of AirfoilSide, Segment, SegmentJoint, Nose, Skin and Morph
 What is built    Blade of Surface and TrimmedSurface, Curve; passage gives a Passage, section_passage a SectionPassage,
                  row a Row, sector a Sector, wheel a Wheel, throat a Throat; blade.report() the station table
 Polars           polar (Polar) of a section or an Airfoil, airfoil_of

@@ -106,6 +106,7 @@ from .section.segmented.parts import Morph as Morph
 from .section.segmented.parts import Nose as Nose
 from .section.segmented.parts import Segment as Segment
 from .section.segmented.parts import SegmentJoint as SegmentJoint
+from .section.segmented.parts import Skin as Skin
 from .section.suction_pressure.part import SuctionPressure as SuctionPressure
 from .section.suction_pressure.part import SuctionPressureSection as SuctionPressureSection
 from .section.thickness.modified_naca import ModifiedNaca as ModifiedNaca

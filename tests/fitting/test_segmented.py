@@ -10,7 +10,7 @@ from bladewright.fitting.fit import fit
 from bladewright.section.laws import Span
 from bladewright.section.profiles.naca4 import Naca4
 from bladewright.section.profiles.naca5 import Naca5
-from bladewright.section.segmented.part import SEGMENTS
+from bladewright.section.segmented.skin import SEGMENTS
 from machines.segmented import REDUCED, airfoil_of
 
 TABLES = Path(__file__).parent / "airfoils"

@@ -12,7 +12,7 @@ from .camber_angles import ANGLES, CAMBER_ANGLES, angle_section_of
 from .meanlines import MEANLINES
 from .oval import OVAL
 from .profiles import PROFILES, PROPERTIES, section_of
-from .segmented import AIRFOILS, airfoil_of
+from .segmented import AIRFOILS, BANDS, airfoil_of
 from .suction_pressure import FAN_TIP, STATOR, TEARDROP, TURBINE, WEDGE, section, vane
 
 
@@ -42,7 +42,8 @@ EXAMPLES: dict[str, Example] = {
     "wedge diffuser of two circles": Example(design=vane(TEARDROP), metal_angles=(65.0, 65.0), maximum_thickness=0.16),
     **{name: Example(design=design, **having) for name, (design, having) in MEANLINES.items()},
     **{name: Example(design=angle_section_of(part), metal_angles=ANGLES[name]) for name, part in CAMBER_ANGLES.items()},
-    **{name: Example(design=airfoil_of(part)) for name, part in AIRFOILS.items()},
+    # a band is checked, and moves nothing
+    **{name: Example(design=airfoil_of(part), dead=BANDS.get(name, ())) for name, part in AIRFOILS.items()},
     **{name: Example(design=section_of(profile), **PROPERTIES.get(name, {})) for name, profile in PROFILES.items()},
 }
 """By a name that says what is particular."""

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from bladewright.section.segmented.part import Segmented, SegmentedSection
-from bladewright.section.segmented.parts import AirfoilSide, Morph, Nose, Segment, SegmentJoint
+from bladewright.section.segmented.parts import AirfoilSide, Morph, Nose, Segment, SegmentJoint, Skin
 
 
 def side(sign, camber=0.0):
@@ -62,13 +62,26 @@ MIXED = replace(
         central_box=replace(REDUCED.lower.central_box, rear_scale=None),
     ),
 )
+SKIN = {"abscissas": (0.004,), "ordinates": (0.003,), "front_scale": 0.05, "rear_scale": -0.1}
+SKINNED = replace(
+    REDUCED,
+    upper=replace(
+        REDUCED.upper, central_box=replace(REDUCED.upper.central_box, skin=Skin(inner=0.001, outer=0.004, **SKIN))
+    ),
+    morph=Morph(leading_edge=4.0, trailing_edge=-15.0),
+)
 AIRFOILS = {
     "segmented": REDUCED,
     "segmented-full": FULL,
     "segmented-mixed": MIXED,
     "segmented-morphed": replace(REDUCED, morph=Morph(leading_edge=4.0, trailing_edge=-15.0)),
+    "segmented-skinned": SKINNED,
 }
 """By a name that says what is particular."""
+
+
+BANDS = {"segmented-skinned": ("upper.central_box.skin.inner", "upper.central_box.skin.outer")}
+"""parameters that limit an airfoil and move nothing"""
 
 
 def airfoil_of(part):

@@ -12,10 +12,10 @@ from bladewright.nurbs.basis import basis, breaks
 from bladewright.section.laws import Span
 from bladewright.section.outline import Joint
 from bladewright.section.segmented.outline import CUTS
-from bladewright.section.segmented.part import SEGMENTS
 from bladewright.section.segmented.parts import Morph, Nose, Segment, SegmentJoint
 from bladewright.section.segmented.segment import DEGREE, SegmentEnd, control_points, segment_knots
-from machines.segmented import AIRFOILS, FULL, MIXED, REDUCED, airfoil_of
+from bladewright.section.segmented.skin import SEGMENTS
+from machines.segmented import AIRFOILS, FULL, MIXED, REDUCED, SKINNED, airfoil_of
 
 SPAN = Span(np.zeros(1))
 SIDES = ("upper", "lower")
@@ -167,6 +167,51 @@ def test_a_morph_that_crosses_itself_is_refused_with_the_morph_as_cure():
     part = replace(REDUCED, morph=Morph(leading_edge=0.0, trailing_edge=-89.0))
     with pytest.raises(DesignError, match=r"crosses itself on its upper side.*smaller angles of morph"):
         airfoil_of(part).build()
+
+
+def skinned(**fields):
+    """The morphed airfoil with a morphed skin of the upper central box."""
+    return SKINNED.changed({f"upper.central_box.skin.{name}": value for name, value in fields.items()})
+
+
+def test_a_skin_keeps_what_its_joints_keep():
+    for old, new in zip(*(segments(each)[0] for each in (replace(REDUCED, morph=SKINNED.morph), SKINNED)), strict=True):
+        for one, other in zip(ends_of(old), ends_of(new), strict=True):
+            assert other[0] == pytest.approx(one[0], abs=1e-15)
+    before, after = segments(REDUCED)[0][1], segments(SKINNED)[0][1]
+    assert np.max(np.abs(before - after)) > 1e-3
+    for one, other in zip(ends_of(before), ends_of(after), strict=True):
+        assert slope_and_curvature(other) == pytest.approx(slope_and_curvature(one), abs=1e-10)
+
+
+def test_the_band_of_a_skin_is_as_wide_as_its_farthest_point_off_the_old_one():
+    s = np.linspace(*CUTS, 4001)
+    old, new = (
+        airfoil_of(each).build().outline.points(s)[0][0] for each in (replace(SKINNED, upper=REDUCED.upper), SKINNED)
+    )
+    gaps = np.min(np.linalg.norm(new[::8, None] - old[None], axis=-1), axis=1)
+    farthest = float(np.max(gaps))
+    for outer, fits in ((farthest + 1e-6, True), (farthest - 1e-6, False)):
+        design = airfoil_of(skinned(outer=outer))
+        if fits:
+            design.build()
+            continue
+        with pytest.raises(DesignError, match=r"upper.central_box.skin.outer is .* outside the old one"):
+            design.build()
+    with pytest.raises(DesignError, match=r"skin.inner is 0.001: .* inside the old one"):
+        airfoil_of(skinned(ordinates=(-0.006,))).build()
+
+
+def test_a_skin_without_changes_fits_a_band_of_no_width():
+    bare = {"abscissas": (), "ordinates": (), "front_scale": None, "rear_scale": None}
+    airfoil_of(skinned(inner=0.0, outer=0.0, **bare)).build()
+
+
+def test_impossible_skins_are_refused():
+    with pytest.raises(DesignError, match=r"skin.abscissas has 2 entries for 1 inner control points"):
+        skinned(abscissas=(0.0, 0.0))
+    with pytest.raises(DesignError, match=r"skin.rear_scale leaves a scale factor of -"):
+        airfoil_of(skinned(rear_scale=-3.0)).build()
 
 
 @pytest.mark.parametrize(

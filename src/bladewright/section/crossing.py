@@ -51,6 +51,7 @@ def closed_outlines(outline: Outline) -> Reals:
 
 def check_outline(outline: Outline, where: Sequence[str]) -> None:
     """Refuse sections (m,) of a family that cross themselves or fold back; `where` (m,) names each."""
+    outline.check_limits(where)
     outlines = closed_outlines(outline)
     for kind, found in (("crosses itself", self_crossings(outlines)), ("folds back on itself", _folding(outlines))):
         if found is None:

@@ -102,6 +102,9 @@ class Outline(ABC):
         """s of the two cuts that part each side in leading edge, central box and trailing edge; None: not parted."""
         return None
 
+    def check_limits(self, where: Sequence[str]) -> None:  # noqa: B027 - most have nothing more to be refused
+        """Refuse what a family forbids besides sections that cross themselves; `where` (m,) names each."""
+
     @property
     def crossing_cure(self) -> str:
         """What helps where a section crosses itself or folds back."""

@@ -15,9 +15,10 @@ from bladewright.numerics.elementary import cross2, dot, length, turned_left, un
 from bladewright.nurbs.basis import Reals, basis, greville
 from bladewright.section.laws import law_points
 from bladewright.section.profiles.points import PointsProfile
-from bladewright.section.segmented.part import SEGMENTS, JointVectors, Segmented, side_joints
+from bladewright.section.segmented.part import JointVectors, Segmented, side_joints
 from bladewright.section.segmented.parts import AirfoilSide, Nose, Segment, SegmentJoint
 from bladewright.section.segmented.segment import DEGREE, control_points, segment_knots
+from bladewright.section.segmented.skin import SEGMENTS
 
 LONGEST_CONTOUR = 2.6
 """length of the polygon of points in order around a section, of its extent from the first point, up to which they are

@@ -15,6 +15,7 @@ from bladewright.section.offset import merged_joints
 from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
 from bladewright.section.power_series import Series, point_derivatives, polynomial, variable
 from bladewright.section.segmented.segment import DEGREE, powers
+from bladewright.section.segmented.skin import Band
 
 CUTS = (0.4, 0.7)
 """s of the front and the rear cut: the leading edge's share is larger than its length's, for its curvature [-]"""
@@ -81,6 +82,10 @@ class SegmentedOutline(Outline):
     blunt: bool
     """whether the trailing edge is open, and closed by a straight face"""
     morphed: bool = False
+    bands: tuple[Band, ...] = ()
+    """of the segments whose skin is morphed"""
+    old_sides: tuple[SegmentedSide, SegmentedSide] | None = None
+    """the upper and the lower side before their skins were morphed"""
 
     @property
     def sides(self) -> tuple[SegmentedSide, SegmentedSide]:
@@ -112,6 +117,13 @@ class SegmentedOutline(Outline):
     def crossing_cure(self) -> str:
         turned = "turn the edges by smaller angles of morph, or " if self.morphed else ""
         return f"{turned}bring the inner control points and the scale factors of that segment nearer to its joints"
+
+    def check_limits(self, where: Sequence[str]) -> None:
+        if self.old_sides is None:
+            return
+        for band in self.bands:
+            new = self.sides[band.side].controls[band.segment]
+            band.check(self.old_sides[band.side].controls, new, where)
 
     def points(self, s: Reals) -> tuple[Array, Array]:
         upper, lower = (

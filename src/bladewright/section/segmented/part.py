@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
-from typing import Literal
+from itertools import pairwise, product
+from typing import Any, Literal
 
 import numpy as np
 
@@ -16,12 +17,12 @@ from bladewright.section.planar import PlanarSection
 from bladewright.section.profiles.profile import Profile
 from bladewright.section.segmented.morph import morphed
 from bladewright.section.segmented.outline import SegmentedOutline, SegmentedSide
-from bladewright.section.segmented.parts import AirfoilSide, Morph, Nose, Segment, SegmentJoint
+from bladewright.section.segmented.parts import AirfoilSide, Morph, Nose, Segment, SegmentJoint, Skin
 from bladewright.section.segmented.segment import DEGREE, SegmentEnd, control_points
+from bladewright.section.segmented.skin import SEGMENTS, Band
 
 PLACE = Limits(0.0, 1.0, "a cut must lie between 0 and 1 chord")
 THICKNESS = Limits(0.0, 0.5, "an open trailing edge must be thicker than 0 and thinner than half the chord")
-SEGMENTS = ("leading_edge", "central_box", "trailing_edge")
 _Given = tuple[Law | None, Law | None]
 """Angle, and curvature or radius, of a joint."""
 
@@ -73,16 +74,28 @@ class Segmented(Profile):
                 f"partition is {float(np.real(front).flat[0]):g}, {float(np.real(rear).flat[0]):g}: the front cut must "
                 "lie ahead of the rear one"
             )
-        upper, lower = (_side(self, sign, span) for sign in (1.0, -1.0))
-        if self.morph is not None:
-            upper, lower = morphed(self.morph, upper, lower, span)
+        upper, lower = self._sides(span, skinned=True)
+        bands = tuple(self._bands(span))
         return SegmentedOutline(
             upper=upper,
             lower=lower,
             nose=0 if self.nose is None else self.nose.continuity,
             blunt=self.trailing_edge_thickness is not None,
             morphed=self.morph is not None,
+            bands=bands,
+            old_sides=self._sides(span, skinned=False) if bands else None,
         )
+
+    def _sides(self, span: Span, *, skinned: bool) -> tuple[SegmentedSide, SegmentedSide]:
+        upper, lower = (_side(self, sign, span, skinned=skinned) for sign in (1.0, -1.0))
+        return (upper, lower) if self.morph is None else morphed(self.morph, upper, lower, span)
+
+    def _bands(self, span: Span) -> Iterator[Band]:
+        for k, side in enumerate((self.upper, self.lower)):
+            for j, name in enumerate(SEGMENTS):
+                skin = getattr(side, name).skin
+                if skin is not None:
+                    yield Band(side=k, segment=j, inner=span.values(skin.inner), outer=span.values(skin.outer))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,11 +108,14 @@ class SegmentedSection(PlanarSection):
 
 def _check(path: str, segment: Segment, front: _Given, rear: _Given) -> None:
     """Refuse scale factors of vectors that are not given, and too few control points."""
-    for name, given in (("front_scale", front), ("rear_scale", rear)):
-        if getattr(segment, name) is not None and given[0] is None:
+    holders: list[tuple[str, Any]] = [("", segment)]
+    if segment.skin is not None:
+        holders.append(("skin.", segment.skin))
+    for (prefix, holder), (field, given) in product(holders, (("front_scale", front), ("rear_scale", rear))):
+        if getattr(holder, field) is not None and given[0] is None:
             raise DesignError(
-                f"{path}.{name} is given, but no tangent is at that end: it scales what the joint's angle gives; leave "
-                "it out, or give the joint an angle"
+                f"{path}.{prefix}{field} is given, but no tangent is at that end: it scales what the joint's angle "
+                "gives; leave it out, or give the joint an angle"
             )
     ends = 2 + sum(each is not None for each in (*front, *rear))
     if ends + len(segment.abscissas) < DEGREE + 1:
@@ -109,7 +125,7 @@ def _check(path: str, segment: Segment, front: _Given, rear: _Given) -> None:
         )
 
 
-def _side(part: Segmented, sign: float, span: Span) -> SegmentedSide:
+def _side(part: Segmented, sign: float, span: Span, *, skinned: bool) -> SegmentedSide:
     """The upper (1) or the lower side (-1)."""
     side = part.upper if sign > 0.0 else part.lower
     joints = side_joints(part, sign, span)
@@ -122,6 +138,8 @@ def _side(part: Segmented, sign: float, span: Span) -> SegmentedSide:
             for each in (segment.front_scale, segment.rear_scale)
         ]
         inner = _points(span.control_values(segment.abscissas), span.control_values(segment.ordinates))
+        if skinned and segment.skin is not None:
+            scales, inner = _skinned(f"{name}.skin", segment.skin, scales, inner, span)
         ends = [joint.end(distance, scale) for joint, scale in zip((front, rear), scales, strict=True)]
         controls.append(control_points(ends[0], inner, ends[1]))
         speeds.append((scales[0] * distance, scales[1] * distance))
@@ -130,6 +148,21 @@ def _side(part: Segmented, sign: float, span: Span) -> SegmentedSide:
         speeds=tuple(speeds),
         continuity=(side.front_joint.continuity, side.rear_joint.continuity),
     )
+
+
+def _skinned(path: str, skin: Skin, scales: Sequence[Array], inner: Array, span: Span) -> tuple[list[Array], Array]:
+    """Scale factors (..., m) and inner control points (..., m, k, 2) with their changes."""
+    zero = 0.0 * inner[..., 0]
+    moves = [span.control_values(row) if row else zero for row in (skin.abscissas, skin.ordinates)]
+    found = []
+    for name, scale in zip(("front_scale", "rear_scale"), scales, strict=True):
+        change = getattr(skin, name)
+        found.append(scale if change is None else scale + span.values(change))
+        if np.any(np.real(found[-1]) <= 0.0):
+            raise DesignError(
+                f"{path}.{name} leaves a scale factor of {float(np.min(np.real(found[-1]))):g}: it must stay above 0"
+            )
+    return found, inner + _points(*moves)
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,6 +13,8 @@ ANGLE = Limits(-90.0, 90.0, "an angle must lie between -90 and 90 deg")
 RADIUS = Limits(0.0, 10.0, "a radius must lie above 0 and below 10 chords")
 CURVATURE = Limits(-1e4, 1e4, "a curvature must lie between -1e4 and 1e4 over the chord")
 POSITION = Limits(-10.0, 10.0, "it must lie between -10 and 10 chords")
+OFFSET = Limits(0.0, 0.5, "an offset must lie from 0 to half the chord", closed=True)
+CHANGE = Limits(-20.0, 20.0, "a change of a scale factor must lie between -20 and 20")
 SCALE = Limits(0.0, 20.0, "a scale factor must lie above 0 and below 20")
 
 
@@ -63,6 +65,32 @@ class SegmentJoint(Part):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Skin(Part):
+    """Changes of a segment's scale factors and inner control points, within a band about the segment without them.
+
+    Tangent and curvature at the joints stay as they are.
+    """
+
+    inline: ClassVar[bool] = True
+
+    inner: Law = parameter("-", limits=OFFSET)
+    """how far the skin may lie inside that of the segment without its changes, of the chord [-]"""
+    outer: Law = parameter("-", limits=OFFSET)
+    """how far it may lie outside, of the chord [-]"""
+    abscissas: ChordwiseLaw = parameter("-", limits=POSITION, default=())
+    """what is added to those of the inner control points; none: nothing [-]"""
+    ordinates: ChordwiseLaw = parameter("-", limits=POSITION, default=())
+    """what is added to those of the inner control points; none: nothing [-]"""
+    front_scale: Law | None = parameter("-", limits=CHANGE, default=None)
+    """what is added to the scale factor towards the leading edge; none: nothing [-]"""
+    rear_scale: Law | None = parameter("-", limits=CHANGE, default=None)
+    """what is added to the scale factor towards the trailing edge; none: nothing [-]"""
+
+    def __post_init__(self) -> None:
+        checks.parameters(self)
+
+
+@dataclass(frozen=True, kw_only=True)
 class Segment(Part):
     """A uniform cubic B-spline by its inner control points; those at its ends follow from its joints."""
 
@@ -77,6 +105,8 @@ class Segment(Part):
     curve's speed there over its joints' distance; none: 1 [-]"""
     rear_scale: Law | None = parameter("-", limits=SCALE, default=None)
     """the same at the end towards the trailing edge; none: 1 [-]"""
+    skin: Skin | None = None
+    """how the skin morphs within its band; none: not at all"""
 
     def __post_init__(self) -> None:
         checks.parameters(self)
@@ -85,6 +115,14 @@ class Segment(Part):
                 f"abscissas has {len(self.abscissas)} entries and ordinates {len(self.ordinates)}: give each inner "
                 "control point both"
             )
+        if self.skin is not None:
+            for name in ("abscissas", "ordinates"):
+                given = len(getattr(self.skin, name))
+                if given not in (0, len(self.abscissas)):
+                    raise DesignError(
+                        f"skin.{name} has {given} entries for {len(self.abscissas)} inner control points: give one for "
+                        "each, or none"
+                    )
 
 
 @dataclass(frozen=True, kw_only=True)
