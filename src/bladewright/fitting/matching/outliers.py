@@ -15,20 +15,20 @@ from scipy.spatial import cKDTree
 
 from bladewright.fitting.clouds.thinning import even_subset
 from bladewright.fitting.matching.footpoints import Footpoints
-from bladewright.numerics.robust import median_deviation
+from bladewright.numerics.robust import DEVIATION_OVER_MEDIAN, median_deviation
 from bladewright.nurbs.basis import Reals
 
 NEIGHBOURS = {2: 4, 3: 8}
 """neighbours that a point is compared with, by dimension: two to each side of a curve, a ring on a surface."""
-OUTLYING_NOISE = 8.0
-"""distance of an outlier, in standard deviations of the noise. Of a million normal points none is so far off."""
+OUTLYING_NOISE = 6.0
+"""distance of an outlier, in standard deviations of the noise: two of a billion normal points are so far off."""
 NEIGHBOUR_STEP = 5.0
 """largest difference of neighbours on one surface, in standard deviations of the noise."""
 OUTLYING_MISFIT, OUTLYING_MISFIT_AT_EDGES = 6.0, 60.0
 """distance of an outlier, in usual misfits of the design, and near an edge (`OUTLYING_MISFIT_AT_EDGES`), where misfits
 are large and neighbours are few. Lower values take points of an edge that is not yet found for outliers."""
-STEEPEST_MISFIT = 40.0
-"""usual misfits by which the misfit may change along the cloud's extent."""
+MATCHED = 1.0 / 3.0
+"""misfit, of the noise, below which distances are noise: it adds 5 % to their standard deviation."""
 STEEPER_THAN_AROUND = 4.0
 """ratio by which the misfit may become steeper than it is around a point."""
 EDGE_BAND = 0.03
@@ -37,7 +37,8 @@ SIDES_APART = 0.05
 """distance that the two sides of a thin blade are taken to have, of the extent, so that points of one are not
 neighbours of the other."""
 STEADY_MISFIT = 100.0
-"""usual misfits beyond which a small group away from the edges is outlying though distances rise to it steadily."""
+"""usual misfits beyond which a small group away from the edges is outlying though distances rise to it steadily, as on
+the end faces of a solid."""
 CHANCE_EXCESS = 3.0
 """excess of the usual distance over the noise by chance, in multiples of the noise over the root of the number of
 points."""
@@ -56,12 +57,12 @@ SPIKE_SLOPE, SPIKE_NEIGHBOURS = 2.0, 0.1
 which they lie on the surface (`SPIKE_NEIGHBOURS`)."""
 LARGEST_OUTLIER_SHARE = 0.15
 """share of outliers from which it is the design that lies off, and all points count as inliers."""
-LOCAL_POINTS, LOCAL_SITES = 64, 5000
-"""points around each of `LOCAL_SITES` sites whose noise is taken to be the same: enough for a quartile, few enough to
-follow a scanner whose noise varies."""
+LOCAL_POINTS, LOCAL_SITES = 128, 5000
+"""points around each of `LOCAL_SITES` sites whose noise and misfit are taken to be alike: a quartile of so many is
+known to 15 %, and few enough follow a scanner whose noise varies."""
 DEVIATION_OVER_QUARTILE = 3.1384
-"""standard deviation of normal noise over the lower quartile of its magnitude, which a group of outliers spoils less
-than the median."""
+"""standard deviation of normal noise over the lower quartile of its magnitude, 1 / Phi^-1(5/8): the points of an end
+face beside a side, half of all there, spoil it less than the median."""
 CORE_NEIGHBOURS = 3
 """points of the large groups beside a small one to which a step within the noise may lead."""
 ALWAYS_INLIER = 1e-6
@@ -112,27 +113,38 @@ def outliers_of(
     usual = median_deviation(roots * distances)
     chance = 1.0 + CHANCE_EXCESS / np.sqrt(len(heights))
     misfit = float(np.sqrt(max(usual**2 - (chance * noise) ** 2, 0.0)))
-    level = np.maximum(noise, _local_noise(deviations, around)) / roots
+    near, site = _surroundings(around)
+    level = np.maximum(noise, DEVIATION_OVER_QUARTILE * np.quantile(deviations[near], 0.25, axis=1)[site]) / roots
     edge = (footpoints.u < EDGE_BAND) | (footpoints.u > 1.0 - EDGE_BAND)
-    near = ALWAYS_INLIER * around.extent
-    least = np.hypot(OUTLYING_NOISE * level, np.where(edge, OUTLYING_MISFIT_AT_EDGES, OUTLYING_MISFIT) * misfit) + near
-    spikes = _spikes(heights, OUTLYING_NOISE * level + near, around)
+    exact = ALWAYS_INLIER * around.extent
+    # a misfit of the design is told from outliers by going on from point to point
+    matched = misfit < MATCHED * noise and noise > exact
+    slopes, local = np.zeros(len(heights)), np.full(len(heights), misfit)
+    if not matched:
+        steep = _steepness(heights, level, around)
+        slopes = STEEPER_THAN_AROUND * _lower(steep[index])
+        if footpoints.points.shape[1] == 2:
+            # on a blade points of an end face may be most of those around
+            slopes = STEEPER_THAN_AROUND * _median(steep, near)[site]
+            local = np.maximum(misfit, DEVIATION_OVER_MEDIAN * _median(roots * distances, near)[site])
+    least = np.hypot(OUTLYING_NOISE * level, np.where(edge, OUTLYING_MISFIT_AT_EDGES, OUTLYING_MISFIT) * local) + exact
+    spikes = _spikes(heights, OUTLYING_NOISE * level + exact, around)
     far = (distances > least) | spikes
     if not np.any(far):
         return far
     wrong = _short_of_ends(far & (past > least), np.abs(heights) <= np.maximum(least, LEVEL_SLOPE * past), footpoints)
     beyond = (past > least) & ~wrong
     largest = min(max(SMALL_GROUP, int(LARGEST_GROUP * len(heights))), len(heights) // 5)
-    # differences beyond the noise are a misfit
-    noisy = misfit == 0.0 and noise > near
-    slopes = np.zeros(len(heights)) if noisy else _slopes(heights, level, misfit, around)
     found = spikes | (far & (beyond | _cut_off(heights, level, beyond, slopes, largest, around)))
     # past an end that is wrong, only the signed distance from the sides counts
     off_surface = np.where(wrong, np.abs(heights), distances)
-    steady = ~found & (off_surface > np.hypot(OUTLYING_NOISE * level, STEADY_MISFIT * misfit) + near)
-    label = _groups(steady, steady, index)
-    # an edge's radius is shown by few points and may be wrong by itself: these are no outliers
-    found |= steady & (_sizes(label) <= largest) & ~np.isin(label, label[edge & steady])
+    if matched:
+        found |= ~edge & (off_surface > least)
+    elif footpoints.points.shape[1] == 3:
+        steady = ~found & (off_surface > np.hypot(OUTLYING_NOISE * level, STEADY_MISFIT * misfit) + exact)
+        label = _groups(steady, steady, index)
+        # an edge's radius is shown by few points and may be wrong by itself: these are no outliers
+        found |= steady & (_sizes(label) <= largest) & ~np.isin(label, label[edge & steady])
     return found if np.mean(found) < LARGEST_OUTLIER_SHARE else np.zeros_like(found)
 
 
@@ -162,20 +174,23 @@ def _short_of_ends(past: NDArray[np.bool_], level: NDArray[np.bool_], footpoints
     return wrong
 
 
-def _local_noise(deviations: Reals, around: Neighbourhood) -> Reals:
-    """The standard deviation of the noise (n,) around each point."""
+def _surroundings(around: Neighbourhood) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """The points (m, k) around each of m sites, and the site (n,) of every point."""
     sites = even_subset(around.places, LOCAL_SITES)
-    _, near = cKDTree(around.places).query(around.places[sites], k=min(LOCAL_POINTS, len(deviations)))
-    noise = DEVIATION_OVER_QUARTILE * np.quantile(deviations[near.reshape(len(sites), -1)], 0.25, axis=1)
-    return np.asarray(noise[cKDTree(around.places[sites]).query(around.places)[1]])
+    near = cKDTree(around.places).query(around.places[sites], k=min(LOCAL_POINTS, len(around.places)))[1]
+    return near.reshape(len(sites), -1), cKDTree(around.places[sites]).query(around.places)[1]
 
 
-def _slopes(heights: Reals, level: Reals, misfit: float, around: Neighbourhood) -> Reals:
-    """How much signed distances may change per length along the surface (n,) by a misfit that varies steadily."""
+def _median(values: Reals, near: NDArray[np.intp]) -> Reals:
+    """The median (m,) of values (n,) of the nearer half of the points (m, k) around sites."""
+    return np.asarray(np.median(values[near[:, : LOCAL_POINTS // 2]], axis=1))
+
+
+def _steepness(heights: Reals, level: Reals, around: Neighbourhood) -> Reals:
+    """How much signed distances (n,) change per length along the surface beyond the noise."""
     index = around.index
     way = np.sqrt(np.sum((around.places[index] - around.places[:, None]) ** 2, axis=-1)) + ALWAYS_INLIER * around.extent
-    change = np.maximum(np.abs(heights[index] - heights[:, None]) - NEIGHBOUR_STEP * level[:, None], 0.0) / way
-    return STEEPER_THAN_AROUND * _lower(_lower(change)[index]) + STEEPEST_MISFIT * misfit / around.extent
+    return _lower(np.maximum(np.abs(heights[index] - heights[:, None]) - NEIGHBOUR_STEP * level[:, None], 0.0) / way)
 
 
 def _lower(values: Reals) -> Reals:
