@@ -43,7 +43,7 @@ def model(noise=1e-4):
 
 @pytest.mark.parametrize("design", [MADE, STATOR], ids=lambda design: design.name)
 def test_control_points_of_a_wider_law_are_the_embedding_of_those_of_a_narrower_one(design):
-    wide = reshaped(design, wider_structure(design))
+    wide = reshaped(design, wider_structure(design, 10_000))
     for law in resizable_laws(wide):
         narrow = law.resized(structure_of(wide), law.counts(structure_of(design)))
         few, many = reshaped(wide, narrow), reshaped(reshaped(wide, narrow), structure_of(wide))

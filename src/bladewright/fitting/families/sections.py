@@ -103,7 +103,7 @@ def criterion(match: Match, target: MatchTarget) -> float:
 
 def _is_far(match: Match, target: MatchTarget) -> bool:
     """Whether a match by standard profiles is not what is asked for."""
-    limit = LARGEST_OPEN * match.model.chord if target.tolerance is None else target.tolerance
+    limit = LARGEST_OPEN[2] * match.model.chord if target.tolerance is None else target.tolerance
     short = target.parameters is not None and len(match.problem.paths) < target.parameters
     return has_systematic_misfit(match) and (short or (target.parameters is None and match.maximum > limit))
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import LinAlgError, cho_factor, cho_solve, eigvalsh
+from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.matching.search import Match
@@ -215,11 +215,6 @@ class LinearModel:
         """The change of a law's free parameters to the nearest ones of other counts."""
         self._law_subspace(law, counts)
         return self._known[law, counts][3]
-
-    def eigenvalues(self, counts: Sequence[Counts]) -> Reals:
-        """The eigenvalues (j,) of a structure's normal equations without the regularisation, smallest first."""
-        columns = self.slopes @ self.subspace(counts)[0]
-        return np.asarray(eigvalsh(columns.T @ columns))
 
     def left_out(self, counts: Sequence[Counts], folds: NDArray[np.intp]) -> Reals:
         """Sums of squares (f,) of the points' residuals in each fold, predicted from all points but those.

@@ -22,7 +22,21 @@ RICH_CHANNEL = (8, 8, 6, 6)
 
 def rich_structure(design: Design, points: int) -> Any:
     """A structure with more control points in every law than a match of so many points is likely to need."""
-    own, whole = structure_of(design), richest(design)
+    return _towards(richest(design), design, points)
+
+
+def wider_structure(design: Design, points: int) -> Any:
+    """A rich structure with a third as many control points again in every law of a design."""
+    own, wide = structure_of(design), richest(design)
+    for law in resizable_laws(design):
+        counts = zip(law.counts(own), law.counts(wide), law.limits()[1], strict=True)
+        wide = law.resized(wide, tuple(max(rich, min(count + count // 3, most)) for count, rich, most in counts))
+    return _towards(wide, design, points)
+
+
+def _towards(whole: Any, design: Design, points: int) -> Any:
+    """A structure with more control points than a design's own, or as large a share of them as the points allow."""
+    own = structure_of(design)
     for share in SHARES:
         rich = own
         for law in resizable_laws(design):
@@ -46,12 +60,3 @@ def richest(design: Design) -> Any:
     channel = {name: max(count, most) for (name, count), most in zip(own.channel.items(), RICH_CHANNEL, strict=False)}
     chordwise = max(own.chordwise[0], least), max(own.chordwise[1], least)
     return replace(own, chordwise=chordwise, span=span, channel=channel)
-
-
-def wider_structure(design: Design) -> Any:
-    """A rich structure with half as many control points again in every law of a design."""
-    own, wide = structure_of(design), richest(design)
-    for law in resizable_laws(design):
-        counts = zip(law.counts(own), law.counts(wide), law.limits()[1], strict=True)
-        wide = law.resized(wide, tuple(max(rich, min(count + count // 2, most)) for count, rich, most in counts))
-    return wide.with_samples(own.samples)

@@ -7,7 +7,6 @@ distance, or else the smallest error of prediction where whole neighbourhoods of
 2017), within one standard error (Hastie, Tibshirani and Friedman 2009, section 7.10).
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -17,7 +16,7 @@ from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.estimates import undetermined_parameters
 from bladewright.fitting.free_parameters import corner_radii
-from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
+from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, evaluated, searched
 from bladewright.fitting.model_selection.elimination import PREDICTED, best_of_size, eliminated, reweighted
 from bladewright.fitting.model_selection.match_target import MatchTarget
 from bladewright.fitting.model_selection.prediction import FOLDS, LinearModel, Prediction, folds_of
@@ -79,8 +78,13 @@ def selected_match(
     if task.dimension == 3 and guessed:
         # laws that need no control points along the span begin as constants
         found = replace(selection, task=task.thinned(QUICK_POINTS)).well_predicted(found)
-    near = target.open and found.maximum < NEAR * found.model.chord
-    rich = found if near else selection.rich(found)
+    near = NEAR * found.model.chord
+    if target.open and found.maximum < near:
+        rich = found
+    elif target.open:
+        rich = selection.rich(found, near if task.dimension == 2 else LARGEST_OPEN[3] * found.model.chord)
+    else:
+        rich = selection.rich(found, REWEIGHTED_GAIN * (target.tolerance or np.inf))
     if task.dimension == 3 and _refused(rich):
         selection = selection.with_margin()
         many = replace(many, margin_factor=selection.task.margin_factor)
@@ -93,14 +97,13 @@ def selected_match(
     if target.tolerance is not None:
         confirmed = len(many.points) == len(several.points)
         return (found if confirmed else _confirmed(many, found, target.tolerance)), reason
-    found = _searched_further(many, found)
-    return _determined(many, found) if target.open else (found, reason)
+    return _determined(many, found) if target.open else (_searched_further(many, found), reason)
 
 
-def _searched_further(task: Task, match: Match, **options: int) -> Match:
+def _searched_further(task: Task, match: Match) -> Match:
     """A match searched on, or as it is where that cannot be built any more, or finer knots leave it no shape."""
     try:
-        found = searched(task, match.design, noise=match.rms, min_reduction=FINAL_REDUCTION, **options)
+        found = searched(task, match.design, noise=match.rms, min_reduction=FINAL_REDUCTION)
     except FitError:
         return match
     lost = task.dimension == 3 and _refused(found) and not _refused(match)
@@ -108,19 +111,18 @@ def _searched_further(task: Task, match: Match, **options: int) -> Match:
 
 
 def _determined(task: Task, match: Match) -> tuple[Match, str]:
-    """A match without the parameters that the points do not determine, which are held, and a note of them."""
+    """A match searched on, with the parameters held that the points do not determine, and a note of them."""
     held: list[str] = []
-    for _ in range(MOST_HOLDINGS):
+    for number in range(MOST_HOLDINGS):
         more = undetermined_parameters(match, DETERMINED_MARGIN)
-        if not more:
+        if number and not more:
             break
         held += more
-        free = replace(task, free=partial(_free_but, task, held))
-        match = _searched_further(free, match, rounds=QUICK_ROUNDS)
+        match = _searched_further(replace(task, free=partial(_free_but, task, tuple(held))), match)
     return match, HELD_NOTE.format(", ".join(held)) if held else ""
 
 
-def _free_but(task: Task, held: list[str], design: Design) -> tuple[str, ...]:
+def _free_but(task: Task, held: tuple[str, ...], design: Design) -> tuple[str, ...]:
     return tuple(path for path in task.free(design) if path not in held)
 
 
@@ -131,7 +133,7 @@ def _of_structure(several: Task, many: Task, found: Match, structure: Structure,
         tried = [found] if structure_of(found.design) == structure else []
         starts = [found] if not tried else []
         if not tried or has_systematic_misfit(found):
-            starts.append(selection.rich(found))
+            starts.append(selection.rich(found, np.inf))
         for start in starts:
             try:
                 tried.append(searched(several, reshaped(start.design, structure), noise=GUESS_NOISE))
@@ -158,21 +160,25 @@ TRIED_PARAMETERS, MOST_TRIED = 100, 4
 (`MOST_TRIED`)."""
 STAGES = 3
 """times that structures are predicted anew about the match that they have led to."""
-LARGEST_CONDITION = 1e7
-"""condition of the derivatives by the scaled parameters that a structure may have where it is not given."""
-NEAR, NEAR_RICH = 5e-5, 1.25
-"""largest distance that a match whose misfit is no noise keeps where nothing is asked for: of the chord, or of that of
-a rich structure."""
+NEAR_RICH = 1.25
+"""largest distance that a match keeps whose misfit is no noise and of which nothing is asked, of that of a rich one."""
 NOISE_QUANTILE = 1.645
 """standard errors by which a misfit may pass the noise, which one of pure noise does once in twenty times."""
-LARGEST_OPEN = 8e-4
-"""largest distance, of the chord, from which control points are added where nothing is asked for."""
+NEAR = 5e-5
+"""largest distance, of the chord, from which rich structures get more control points where nothing is asked for."""
+LARGEST_OPEN = {2: 4e-4, 3: 6e-4}
+"""the same of a match, by dimension, and of rich structures in space, where time bounds them."""
+RICHER_GAIN = 0.6
+"""ratio of the misfits of two rich structures above which a richer one is of no use: a third as many control points
+again bring a cubic spline nearer by (3/4)^4, a third (de Boor 1978, chapter 12)."""
 MOST_FAILURES = 3
 """structures in a row that are searched and miss a tolerance, each half as far away as the last"""
-FAR_FROM_PREDICTED = 3.0
-"""ratio of a misfit to the predicted one from which a search begins anew, at the rich match."""
+FIRST_SHARE = {2: 1.0, 3: 0.5}
+"""share of the way to the fewest parameters that the first of these goes, by dimension: blades are less linear."""
 REWEIGHTINGS = 6
 """searches of one structure with other weights at most"""
+REWEIGHTED_GAIN = 2.0
+"""ratio of the largest distances of least squares and of a search whose weights rise with them, at most."""
 HOPELESS = 0.9
 """share of the excess over the tolerance from which other weights are given up"""
 
@@ -189,13 +195,24 @@ class _Selection:
         """The same with edge radii kept further from what is refused."""
         return replace(self, task=replace(self.task, margin_factor=REFUSED_MARGIN * self.task.margin_factor))
 
-    def rich(self, match: Match) -> Match:
-        """The match of a rich structure, or the one before where that leaves it no shape."""
-        try:
-            design = with_feasible_edges(reshaped(match.design, rich_structure(match.design, len(self.task.points))))
-            return searched(self.task, design, noise=match.rms, rounds=QUICK_ROUNDS + 1, min_reduction=ROUGH_REDUCTION)
-        except (DesignError, FitError):
-            return match
+    def rich(self, match: Match, near: float) -> Match:
+        """The match of a rich structure, and of ever richer ones until all points are as near as asked [m].
+
+        It is the one before where a richer one has no shape, or comes hardly nearer.
+        """
+        found, structure = match, rich_structure(match.design, len(self.task.points))
+        while found is match or (found.maximum > near and has_systematic_misfit(found)):
+            try:
+                design = with_feasible_edges(reshaped(found.design, structure))
+                richer = searched(
+                    self.task, design, noise=found.rms, rounds=QUICK_ROUNDS + 1, min_reduction=ROUGH_REDUCTION
+                )
+            except (DesignError, FitError):
+                break
+            if found is not match and richer.rms > RICHER_GAIN * found.rms:
+                break
+            found, structure = richer, wider_structure(richer.design, len(self.task.points))
+        return found
 
     def of_size(self, rich: Match, most: int) -> Match:
         """The match of at most so many parameters that predictions lead to."""
@@ -219,7 +236,9 @@ class _Selection:
         errors = np.array([model.left_out(each.counts, folds) for each in candidates])
         best = int(np.argmin(np.sum(errors, axis=1)))
         limit = np.sum(errors[best]) + np.sqrt(FOLDS) * np.std(errors[best])
-        near = NEAR_RICH * max(NEAR, candidates[0].largest)
+        near = max(NEAR_RICH * candidates[0].largest, NEAR)
+        if self.task.dimension == 3:
+            near = max(near, min(rich.maximum / model.chord, LARGEST_OPEN[3]))
         # noise that is known takes the place of errors of prediction (Morozov 1966)
         noise = rich.noise_estimate.noise / model.chord * (1.0 + NOISE_QUANTILE / np.sqrt(2.0 * model.points))
         chosen = [
@@ -227,31 +246,25 @@ class _Selection:
             for each, error in zip(candidates, np.sum(errors, axis=1), strict=True)
             if (error <= limit and each.largest <= near if has_systematic_misfit(rich) else each.rms <= noise)
         ] or candidates[:1]
-        variance = float(np.sum(errors[best])) / model.points
-        unknown = [_undetermined(model, each, variance) for each in chosen]
-        for each, count in reversed(list(zip(chosen, unknown, strict=True))):
-            found = self._searched(model, each) if count == min(unknown) else None
-            if found is not None:
-                return found
-        return rich
+        return next(filter(None, (self._searched(model, each) for each in reversed(chosen))), rich)
 
     def near_everywhere(self, rich: Match) -> Match:
         """The match that predicts well, or one with more parameters where it is far from some points."""
         found = self.well_predicted(rich)
-        limit = LARGEST_OPEN * found.model.chord
+        limit = LARGEST_OPEN[self.task.dimension] * found.model.chord
         if not has_systematic_misfit(found) or _largest(found, rich) <= limit:
             return found
-        nearer, _ = self.within(rich, limit)
+        nearer, _ = self.within(rich, limit, failures=1)
         better = _largest(nearer, rich) < _largest(found, rich) and not _refused(nearer)
         return nearer if better else found
 
-    def within(self, rich: Match, tolerance: float) -> tuple[Match, str]:
+    def within(self, rich: Match, tolerance: float, *, failures: int = MOST_FAILURES) -> tuple[Match, str]:
         """The match of fewest parameters found that keeps a tolerance [m]; the nearest, and why, where none does."""
         if _largest(rich, rich) > tolerance and not has_systematic_misfit(rich):
             return self.well_predicted(rich), NOISE_REASON.format(1e3 * rich.noise_estimate.noise)
         best, nearest, about, wide = None, rich, rich, False
-        share, failed, missed, selection = 1.0, 0, 0, self
-        while failed < MOST_FAILURES:
+        share, failed, missed, selection = FIRST_SHARE[self.task.dimension], 0, 0, self
+        while failed < failures:
             model = self._model(about)
             relative = tolerance / model.chord
             fewer = eliminated(model, 0, relative)
@@ -266,7 +279,8 @@ class _Selection:
             if not kept:
                 break
             tried = kept[int(np.ceil(share * len(kept))) - 1]
-            found = selection._searched_within(model, tried, rich, tolerance)
+            start = selection._start(model, tried)
+            found = None if start is None else selection._reweighted_search(start, tried, rich, tolerance)
             if found is not None and _largest(found, rich) <= tolerance:
                 about = found
                 if self.task.dimension == 3 and _refused(found):
@@ -289,47 +303,32 @@ class _Selection:
     def _widened(self, match: Match) -> Match:
         """A match with more control points in every law, not searched, or the same where that leaves it no shape."""
         try:
-            design = reshaped(match.design, wider_structure(match.design))
+            design = reshaped(match.design, wider_structure(match.design, len(self.task.points)))
             return searched(self.task, design, noise=match.rms, rounds=0)
         except (DesignError, FitError):
             return match
 
     def _searched(self, model: LinearModel, prediction: Prediction) -> Match | None:
         """The match of a predicted structure; None where it has no shape."""
-        found = None
-        for design in self._starts(model, prediction):
-            try:
-                fresh = searched(
-                    self.task, design, rounds=QUICK_ROUNDS, noise=prediction.rms, min_reduction=ROUGH_REDUCTION
-                )
-            except (FitError, DesignError):
-                continue
-            found = fresh if found is None or fresh.misfit < found.misfit else found
-            if found.rms < FAR_FROM_PREDICTED * prediction.rms:
-                break
-        return found
+        start = self._start(model, prediction)
+        if start is None:
+            return None
+        try:
+            return searched(self.task, start, rounds=QUICK_ROUNDS, noise=prediction.rms, min_reduction=ROUGH_REDUCTION)
+        except (FitError, DesignError):
+            return None
 
-    @staticmethod
-    def _starts(model: LinearModel, prediction: Prediction) -> Iterator[Design]:
-        """The predicted design, and the nearest to the rich one: far from a match predictions go too far."""
+    def _start(self, model: LinearModel, prediction: Prediction) -> Design | None:
+        """The predicted design or the one nearest to the rich match, as far from that predictions go too far."""
+        found: Match | None = None
         for change in (prediction.change, np.zeros_like(prediction.change)):
             try:
-                yield model.designed(replace(prediction, change=change))
-            except DesignError:
+                design = model.designed(replace(prediction, change=change))
+                fresh = evaluated(self.task, design, noise=prediction.rms)
+            except (DesignError, FitError):
                 continue
-
-    def _searched_within(
-        self, model: LinearModel, prediction: Prediction, rich: Match, tolerance: float
-    ) -> Match | None:
-        """The match of a structure, whose largest deviations are weighed more until it keeps a tolerance."""
-        best: Match | None = None
-        for start in self._starts(model, prediction):
-            found = self._reweighted_search(start, prediction, rich, tolerance)
-            if found is not None and (best is None or _largest(found, rich) < _largest(best, rich)):
-                best = found
-            if best is not None and best.rms < FAR_FROM_PREDICTED * prediction.rms:
-                break
-        return best
+            found = fresh if found is None or fresh.misfit < found.misfit else found
+        return None if found is None else found.design
 
     def _reweighted_search(self, design: Design, prediction: Prediction, rich: Match, tolerance: float) -> Match | None:
         best, noise = None, prediction.rms
@@ -352,12 +351,6 @@ class _Selection:
 def _largest(match: Match, rich: Match) -> float:
     """The largest distance [m] of the points that took part in a rich match: ends that drew back leave none out."""
     return float(np.max(match.state.footpoints.distances[rich.rows]))
-
-
-def _undetermined(model: LinearModel, prediction: Prediction, variance: float) -> int:
-    """How many directions of a structure's parameters points with errors of a variance do not determine."""
-    values = model.eigenvalues(prediction.counts)
-    return int(np.count_nonzero(values < max(variance, float(values[-1]) / LARGEST_CONDITION**2)))
 
 
 def _confirmed(task: Task, match: Match, tolerance: float) -> Match:
