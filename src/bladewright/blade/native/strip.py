@@ -19,6 +19,10 @@ At a corner of the section the line is the corner's own: V = c + (b - c) w, U = 
 
 the second the joint's own tangent; q, r and k fade from what the corner asks for to 1, 0 and k: on a side within x^5, x
 from 1 at the corner to 0 at the strip's `width` from it, on the face of a blunt edge evenly to the other corner.
+
+At a kink of the contact lines cross the place where the side's curvature jumps, and the strip has a crease of up to
+0.9 deg. With U = 0 there, q and r fading as beside corners, it has none, but 1.5 to 1.9 times the poles around the
+blade (design/fillets.md).
 """
 
 from __future__ import annotations
