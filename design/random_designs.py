@@ -57,6 +57,7 @@ REASONS = {
     "CAD programs lose narrower faces": "a fillet is smaller than 1e-4 of the chord",
     "crosses itself": "the foot of a fillet crosses itself",
     "miss what is promised": "a fillet is not reached within 300 poles along the chord",
+    "axes are so unlike": "an ellipse's axes are too unlike for the angle of blade and wall",
     "touches the blade past": "a fillet is higher than its blade",
     "foot lies past the end": "a fillet reaches past the end of its wall",
     "misses the blade": "a cut misses the blade",

@@ -6,6 +6,7 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
+import random_parts
 
 import bladewright as bw
 from bladewright import cad
@@ -314,6 +315,20 @@ def test_a_fillet_that_needs_too_many_poles_names_the_largest_radius_that_does_n
     asked.changed("hub_fillet.radius", 0.95 * largest).build()
     with pytest.raises(bw.DesignError, match="of hub_fillet the largest that holds is"):
         asked.changed("hub_fillet.radius", 1.05 * largest).build()
+
+
+@pytest.mark.parametrize(
+    ("seed", "says"),
+    [
+        # an ellipse too flat for the angle of blade and wall
+        (268, r"^hub_fillet.* meet at 139 deg, where an ellipse .* touches the blade past its hub;"),
+        # the other fillet touches nothing
+        (177, r"^hub_fillet.*; the largest that holds is 0.206\d of that$"),
+    ],
+)
+def test_a_random_fillet_is_refused_for_what_stops_it(seed, says):
+    with pytest.raises(bw.DesignError, match=says):
+        random_parts.random_design(seed).build()
 
 
 def test_a_suction_side_that_is_not_known_is_refused():

@@ -155,12 +155,18 @@ def place_named(name: str, u: float) -> str:
 def _no_contact(blade: Blade, wall: str, touch: Touch) -> str | None:
     found = touch.found
     missing = ~(found.residual < TOUCHING)
-    outside = (np.real(found.v) < 0.0) | (np.real(found.v) > 1.0)
+    away = (1.0 - 2.0 * touch.ball.end) * (np.real(found.v) - touch.ball.end)
+    # an arc's contact lies within the blade, but for rounding
+    short = (away < 0.0) & (np.real(found.on_blade) != np.real(found.on_wall))
     if missing.any():
         return f"{_place(found.sites, int(np.argmax(missing)))} no ball of that radius touches blade and {wall}"
-    if outside.any():
+    if short.any():
+        worst = int(np.argmin(np.where(short, away, 0.0)))
+        meet = f"blade and {wall} meet at {_between(touch)[worst]:.0f} deg, where an ellipse whose axes are so unlike"
+        return f"{_place(found.sites, worst)} {meet} touches the blade past its {wall}"
+    if np.any(away > 1.0):
         name = blade.design.ends[1 if wall == "hub" else 0]
-        return f"{_place(found.sites, int(np.argmax(outside)))} the ball touches the blade past its {name}"
+        return f"{_place(found.sites, int(np.argmax(away)))} the ball touches the blade past its {name}"
     return None
 
 
@@ -182,11 +188,14 @@ def _at_angle(blade: Blade, wall: str, touch: Touch) -> str | None:
     angle = np.real(touch.sections.angle)
     for worst, wrong in ((int(np.argmin(angle)), angle < LEAST_ANGLE), (int(np.argmax(angle)), angle > MOST_ANGLE)):
         if wrong[worst]:
-            between = 180.0 - np.degrees(angle[worst])
-            return (
-                f"{_place(touch.found.sites, worst)} blade and {wall} meet at {between:.0f} deg, which it cannot fill"
-            )
+            meet = f"blade and {wall} meet at {_between(touch)[worst]:.0f} deg, which it cannot fill"
+            return f"{_place(touch.found.sites, worst)} {meet}"
     return None
+
+
+def _between(touch: Touch) -> Reals:
+    """Angles (k,) between blade and wall [deg]."""
+    return 180.0 - np.degrees(np.real(touch.sections.angle))
 
 
 def _folding(blade: Blade, wall: str, touch: Touch) -> str | None:
@@ -246,6 +255,8 @@ def _too_high(blade: Blade, wall: str, rolled: Rolled) -> str | None:
     away = {
         name: np.real((1.0 - 2.0 * touch.ball.end) * (touch.found.v - touch.ball.end))
         for name, touch in rolled.touches.items()
+        # of another fillet that touches nothing, that is told when its turn comes
+        if name == wall or _no_contact(blade, name, touch) is None
     }
     left = 1.0 - sum(float(np.max(each)) for each in away.values())
     if left >= LEAST_LEFT:
