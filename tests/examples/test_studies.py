@@ -25,3 +25,31 @@ def test_a_study_asserts_its_number_and_leaves_its_files(name, tmp_path, monkeyp
     runpy.run_path(str(FOLDER / f"{name}.py"), run_name="__main__")
     assert SAYS[name] in capsys.readouterr().out
     assert {path.name for path in tmp_path.iterdir()} == {name + end for end in LEFT[name]}
+
+
+SEARCHES = {
+    "fan-mass": ([], ("fan-mass.png", "lightest-fan.toml", "lightest-fan.step")),
+    "vane-front": (
+        ["--members", "3", "--population", "8", "--generations", "1", "--jobs", "1"],
+        ("vane-front.png", "vane-front.jsonl", "vane-front-nsga2.jsonl"),
+    ),
+    "morphing-airfoil": (
+        ["--edges", "8", "1", "--skin", "8", "1", "--jobs", "1"],
+        ("morphing-airfoil.png", "edges.jsonl", "skin.jsonl"),
+    ),
+}
+"""short runs, and what they leave"""
+NEEDED = {"vane-front": ("pymoo",), "morphing-airfoil": ("pymoo", "neuralfoil")}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SEARCHES)
+def test_a_search_asserts_its_numbers_and_leaves_its_files(name, tmp_path, monkeypatch):
+    for module in NEEDED.get(name, ()):
+        pytest.importorskip(module)
+    if name == "morphing-airfoil" and shutil.which("xfoil") is None:
+        pytest.skip("XFOIL is not installed")
+    words, left = SEARCHES[name]
+    monkeypatch.setattr(sys, "argv", [f"{name}.py", str(tmp_path), *words])
+    runpy.run_path(str(FOLDER / f"{name}.py"), run_name="__main__")
+    assert {path.name for path in tmp_path.iterdir()} == set(left)

@@ -75,6 +75,20 @@ def test_a_search_that_was_killed_goes_on_and_ends_like_one_that_was_not(study: 
     assert again.to_csv().count("\n") == 1 + len(again.members)
 
 
+def test_a_function_is_known_by_its_name_when_a_search_goes_on(study: Path, tmp_path: Path) -> None:
+    design = bw.read_design(study.parent / "turbine-section.toml")
+    options = {"method": "nsga2", "population": 4, "generations": 1, "jobs": 1, "manifest": tmp_path / "runs.jsonl"}
+    tables = []
+    for _ in range(2):
+
+        def slender(section):
+            return section.perimeter / section.chord
+
+        found = bw.optimise(design, {"stagger": (-34.0, -28.0)}, slender, {"chord": (30.0, None)}, **options)
+        tables.append(found.runs.to_csv())
+    assert tables[0] == tables[1]
+
+
 def test_a_manifest_of_another_search_is_refused_and_stays(study: Path, tmp_path: Path) -> None:
     manifest = tmp_path / "runs.jsonl"
     Search(read_study(study)).pareto_set(manifest, jobs=1)

@@ -6,7 +6,7 @@ import os
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import asdict, fields
+from dataclasses import asdict, fields, replace
 from pathlib import Path
 from typing import Any, cast
 
@@ -332,6 +332,8 @@ class Search:
         """The first line of the manifest: what determines the runs."""
         from bladewright import __version__
 
+        options = asdict(self.options)
+        del options["generations"]  # a search goes on with more of them
         return {
             "kind": "optimise",
             "bladewright": __version__,
@@ -340,9 +342,22 @@ class Search:
             "designs": {name: text_of(design) for name, design in self.study.designs.items()},
             "variables": {name: given_keys(each) for name, each in self.study.ranges.items()},
             "polars": {name: given_keys(each) for name, each in self.study.polars.items()},
-            "optimise": {**asdict(self.options), "method": self.method},
+            "optimise": {
+                **options,
+                "objectives": [_named(each) for each in self.options.objectives],
+                "constraints": [_named(each) for each in self.options.constraints],
+                "method": self.method,
+            },
             **({"pymoo": pymoo_version()} if self.method == "nsga2" else {}),
         }
+
+
+def _named(entry: Objective | Constraint) -> dict[str, Any]:
+    """An entry as a manifest has it, where functions are known by their names."""
+    asked = entry.quantity
+    if callable(asked):
+        asked = f"{asked.__module__}:{getattr(asked, '__qualname__', type(asked).__qualname__)}"
+    return {**asdict(replace(entry, quantity=None)), "quantity": asked}
 
 
 def _nothing(_: Mapping[str, Any]) -> None:
