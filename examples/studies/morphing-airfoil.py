@@ -157,7 +157,7 @@ def draw(turned, skinned, initial, path):
     axes.set_xlabel("cl by 1 m")
     axes.set_ylabel("efficiency cl / cd")
     axes.grid(color="#e4e9ee")
-    axes.legend(frameon=False, loc="lower right")
+    axes.legend(frameon=False, loc="upper left")
     figure.savefig(path, dpi=100)
 
 

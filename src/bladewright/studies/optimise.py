@@ -97,7 +97,7 @@ def optimise(
         time_limit=time_limit,
     )
     study = Study(
-        name="search" if manifest is None else Path(manifest).stem,
+        name="-".join(designs) if manifest is None else Path(manifest).stem,
         folder=Path.cwd(),
         designs=designs,
         ranges={name: range_of(name, given) for name, given in variables.items()},
