@@ -132,9 +132,14 @@ def test_every_member_of_a_front_is_an_optimum_and_nsga2_finds_none_better(secti
     assert again.table == pytest.approx(front.table, rel=2e-6)  # rows count as held within 1e-6
 
 
+HANGS = "def hangs(section):\n    while True: pass\n"
+
+
 def study(folder: Path, optimise: str, variables: str = "stagger = { lower = -34, upper = -28 }") -> Path:
     (folder / "turbine-section.toml").write_text(example_text("turbine-section"))
-    (folder / "figures.py").write_text("def nothing(section): return float('nan')\ndef solver(section): return 1.0\n")
+    (folder / "figures.py").write_text(
+        "def nothing(section): return float('nan')\ndef solver(section): return 1.0\n" + HANGS
+    )
     path = folder / "search.toml"
     path.write_text(f'design = "turbine-section.toml"\n[variables]\n{variables}\n[optimise]\n{optimise}\n')
     return path
@@ -159,6 +164,10 @@ REFUSED = {
     "equal limits without derivatives": (
         f'{AREA}\nmethod = "nsga2"\nconstraints = [{{ quantity = "chord", lower = 30, upper = 30 }}]',
         "which no random design meets",
+    ),
+    "a figure that takes too long": (
+        'objectives = [{ quantity = "figures:hangs" }]\ntime_limit = 0.2',
+        "takes longer than the limit of 0.2 s",
     ),
     "an adjoint that is no function": ('objectives = [{ quantity = "area", adjoint = true }]', "is no function"),
 }

@@ -28,7 +28,7 @@ from bladewright.studies.optimum import Optimum
 from bladewright.studies.pareto import ParetoSet
 from bladewright.studies.problem import Problem
 from bladewright.studies.quantities import Quantity
-from bladewright.studies.run import Experiment, Record, built_designs, measured
+from bladewright.studies.run import Experiment, Record, built_designs, measured, within
 from bladewright.studies.runs import Runs
 from bladewright.studies.study import Study
 from bladewright.studies.sweep import Given, given_keys, range_of
@@ -260,6 +260,17 @@ class Search:
 
     def _begun(self) -> tuple[dict[str, float], dict[str, list[str]]]:
         """The figures that the search begins with, and their names by quantity."""
+        limit = self.options.time_limit
+        try:
+            with within(limit):
+                return self._measured()
+        except TimeoutError as error:
+            raise StudyError(
+                f"the search cannot begin: the design of the study takes longer than the limit of {limit:g} s; raise "
+                "time_limit, or find what hangs"
+            ) from error
+
+    def _measured(self) -> tuple[dict[str, float], dict[str, list[str]]]:
         built = built_designs(self.experiment, self.start)
         found: dict[str, float] = {}
         names: dict[str, list[str]] = {}

@@ -92,7 +92,7 @@ def record_of(experiment: Experiment, run: int, parameters: Mapping[str, Any]) -
     begin = time.perf_counter()
     found: dict[str, Any] = {"figures": {}, "verdict": "failed", "files": ()}
     try:
-        with _within(experiment.time_limit):
+        with within(experiment.time_limit):
             _carry_out(experiment, run, parameters, found)
     except (DesignError, GeometryError) as error:
         found |= {"verdict": "refused", "reason": _one_line(error)}
@@ -166,7 +166,7 @@ def _written(experiment: Experiment, run: int, built: Mapping[str, BuiltDesign])
 
 
 @contextmanager
-def _within(seconds: float | None) -> Iterator[None]:
+def within(seconds: float | None) -> Iterator[None]:
     """A context that raises TimeoutError after so many seconds, where this thread can be interrupted."""
     alarm: int | None = getattr(signal, "SIGALRM", None)  # Windows has none
     if seconds is None or alarm is None or threading.current_thread() is not threading.main_thread():
