@@ -85,6 +85,9 @@ def selected_match(
         rich = selection.rich(found, near if task.dimension == 2 else LARGEST_OPEN[3] * found.model.chord)
     else:
         rich = selection.rich(found, REWEIGHTED_GAIN * (target.tolerance or np.inf))
+    if len(rich.rows) < len(several.points):
+        # no richer one has a shape, or none is needed: the first match, of few points, stands
+        rich = evaluated(several, rich.design, noise=rich.rms)
     if task.dimension == 3 and _refused(rich):
         selection = selection.with_margin()
         many = replace(many, margin_factor=selection.task.margin_factor)
