@@ -1,4 +1,4 @@
-"""XFOIL (Drela 1989, version 6.99) in a process and a scratch folder of its own: angles in, operating points out."""
+"""XFOIL (Drela 1989, version 6.99) in a process and a scratch folder of its own: angles in, converged points out."""
 
 import os
 import shutil
@@ -15,7 +15,7 @@ from time import monotonic
 from bladewright.aerodynamics import untrapped
 from bladewright.aerodynamics.airfoil import Airfoil
 from bladewright.aerodynamics.conditions import PANELS, Conditions
-from bladewright.aerodynamics.xfoil_output import OperatingPoint, read_polar_dump
+from bladewright.aerodynamics.xfoil_output import ConvergedPoint, read_polar_dump
 from bladewright.errors import PolarError
 
 VARIABLE = "BLADEWRIGHT_XFOIL"
@@ -38,8 +38,8 @@ MISSING = (
 
 def xfoil_points(
     airfoil: Airfoil, angles: Sequence[float], conditions: Conditions
-) -> tuple[str, list[OperatingPoint | None], list[str], list[str]]:
-    """The solver's name, for each angle [deg] the operating point or None, a sentence for each None, and remarks.
+) -> tuple[str, list[ConvergedPoint | None], list[str], list[str]]:
+    """The solver's name, for each angle [deg] the converged point or None, a sentence for each None, and remarks.
 
     Every angle starts from a fresh boundary layer, so that its result does not depend on the others; those that fail
     are tried once more with more panels. Raises PolarError where there is no XFOIL, or where not one angle comes out
@@ -66,7 +66,7 @@ def xfoil_points(
     return f"XFOIL {version}", points, failures, remarks
 
 
-def _at(angle: float, points: Sequence[OperatingPoint]) -> OperatingPoint | None:
+def _at(angle: float, points: Sequence[ConvergedPoint]) -> ConvergedPoint | None:
     return next((point for point in points if abs(point.alpha - angle) < SAME), None)  # real: angles of a real solver
 
 
@@ -81,7 +81,7 @@ def _program() -> str:
 
 def _run(
     program: str, airfoil: Airfoil, angles: Sequence[float], conditions: Conditions, end: float
-) -> tuple[str, list[OperatingPoint], str]:
+) -> tuple[str, list[ConvergedPoint], str]:
     """XFOIL's version, the points that converged, and why it ended early; empty where it did not.
 
     Where the program stops at a floating-point trap, the library against it is built, and it is started again.

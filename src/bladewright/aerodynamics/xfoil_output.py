@@ -1,4 +1,4 @@
-"""XFOIL's polar dump: the operating points that converged, with all digits (written by PACC, unformatted Fortran)."""
+"""XFOIL's polar dump: the points that converged, with all digits (written by PACC, unformatted Fortran)."""
 
 import struct
 from collections.abc import Iterator
@@ -17,7 +17,7 @@ PER_NODE = 6
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class OperatingPoint(FrozenRecord):
+class ConvergedPoint(FrozenRecord):
     """An angle at which XFOIL converged; coefficients refer to the chord."""
 
     alpha: float
@@ -35,7 +35,7 @@ class OperatingPoint(FrozenRecord):
         return self.cd - self.flow.friction_drag
 
 
-def read_polar_dump(path: Path) -> tuple[str, list[OperatingPoint]]:
+def read_polar_dump(path: Path) -> tuple[str, list[ConvergedPoint]]:
     """The version of XFOIL and the points of a dump in the order in which they converged; none of a missing file.
 
     XFOIL is compiled with numbers of four or of eight bytes, which the length of a record tells. A last point that was
@@ -68,7 +68,7 @@ def read_polar_dump(path: Path) -> tuple[str, list[OperatingPoint]]:
             alpha=alpha, x=nodes[:, 0], y=nodes[:, 1], cp=around[:, 1], cf=around[:, 4], stagnation=len(upper)
         )
         points.append(
-            OperatingPoint(alpha=alpha, cl=cl, cd=cd, cm=cm, transition=(transition[0], transition[1]), flow=flow)
+            ConvergedPoint(alpha=alpha, cl=cl, cd=cd, cm=cm, transition=(transition[0], transition[1]), flow=flow)
         )
     return f"{version:.4g}", points
 
