@@ -84,7 +84,7 @@ def check_fillets(blade: Blade, balls: Mapping[str, Ball], rolled: Rolled) -> No
 
 def check_folds(blade: Blade, balls: Mapping[str, Ball], rolled: Rolled) -> None:
     """Raise DesignError, as above, where a fillet folds between the places that were looked at first."""
-    if any(_folding(blade, wall, touch) for wall, touch in rolled.touches.items()):
+    if any(_folding(blade, wall, touch, 0.0) for wall, touch in rolled.touches.items()):
         check_fillets(blade, balls, rolled)
 
 
@@ -198,7 +198,7 @@ def _between(touch: Touch) -> Reals:
     return 180.0 - np.degrees(np.real(touch.sections.angle))
 
 
-def _folding(blade: Blade, wall: str, touch: Touch) -> str | None:
+def _folding(blade: Blade, wall: str, touch: Touch, least: float = LEAST_PROGRESS) -> str | None:
     """Whether neighbouring cross-sections cross: a ball that is larger than the hollow that it rolls in."""
     del blade
     found, sections = touch.found, touch.sections
@@ -215,7 +215,7 @@ def _folding(blade: Blade, wall: str, touch: Touch) -> str | None:
     progress = np.min([dot(forward, each) / size for each in (on_wall, half)], axis=0)
     progress = np.where(senses == np.median(senses), progress, -1.0)
     worst = int(np.argmin(progress))
-    if progress[worst] < LEAST_PROGRESS:
+    if progress[worst] < least:
         return f"{_place(found.sites, worst)} it folds: the ball is larger than the hollow between blade and {wall}"
     return None
 
