@@ -30,6 +30,9 @@ EXACT = 1e-9
 """misfit below which matches are alike, of the chord: the native curves of sections are as near."""
 OUTLINE_COUNTS = (24, 32, 44, 60, 80)
 """numbers of points of contours that are tried in turn"""
+OUTLINE_DEVIATION = 1e-4
+"""largest distance with which a contour gets no further points where nothing is asked for, of the chord: a fifth of
+what acceptance trusts"""
 OUTLINE_POINTS = 1000
 """points by which contours are searched"""
 OUTLINE_SURPLUS = 2
@@ -101,9 +104,9 @@ def criterion(match: Match, target: MatchTarget) -> float:
     return float(points * np.log(max(match.rms, EXACT) ** 2) + count * np.log(points))
 
 
-def _is_far(match: Match, target: MatchTarget) -> bool:
-    """Whether a match by standard profiles is not what is asked for."""
-    limit = LARGEST_OPEN[2] * match.model.chord if target.tolerance is None else target.tolerance
+def _is_far(match: Match, target: MatchTarget, open_limit: float = LARGEST_OPEN[2]) -> bool:
+    """Whether a match is not what is asked for; `open_limit` is the largest distance where nothing is, of the chord."""
+    limit = open_limit * match.model.chord if target.tolerance is None else target.tolerance
     short = target.parameters is not None and len(match.problem.paths) < target.parameters
     return has_systematic_misfit(match) and (short or (target.parameters is None and match.maximum > limit))
 
@@ -118,13 +121,14 @@ def _through_points(
     some, found = task.thinned(OUTLINE_POINTS), None
     starts = {_trailing_edge(each.design): each for each in reversed(tried)}
     for count in OUTLINE_COUNTS if target.parameters is None else (target.parameters - OUTLINE_SURPLUS,):
-        fresh = [each for each in (_outlined(some, kind, each, count, header) for each in starts.values()) if each]
-        if not fresh:
+        fresh = {edge: _outlined(some, kind, each, count, header) for edge, each in starts.items()}
+        best = min(filter(None, fresh.values()), key=lambda each: each.rms, default=None)
+        if best is None:
             continue
-        best = min(fresh, key=lambda each: each.rms)
-        starts = {"": best}
+        # a round edge may need more points to be none of several corners
+        starts = {edge: starts[edge] if each is None else each for edge, each in fresh.items() if each in (None, best)}
         found = best if found is None or best.rms < found.rms else found
-        if not _is_far(found, target):
+        if not _is_far(found, target, OUTLINE_DEVIATION):
             break
     return found
 
