@@ -86,7 +86,7 @@ def nearest(task: Task, designs: Sequence[Design], target: MatchTarget, like: An
             continue
         if can_be_built(fresh[0], TOLERANCES[-1]):
             found.append(fresh)
-            if fresh[0].maximum < NEAR * fresh[0].model.chord or not has_systematic_misfit(fresh[0]):
+            if fresh[0].maximum < NEAR * fresh[0].model.chord:
                 break
     if not found:
         raise FitError(str(refusal)) from refusal
