@@ -137,15 +137,9 @@ class PartLaw(ResizableLaw):
     spanwise: bool
     """whether it may vary along the span"""
 
-    def value(self, design: Any) -> Any:
-        """The law, or the row of laws, of a design."""
-        for step in re.findall(r"\w+", self.name):
-            design = design[int(step)] if step.isdigit() else getattr(design, step)
-        return design
-
     def grid(self, design: Any) -> list[Law]:
         """Its laws along the span, one for each control point along the chord."""
-        value = self.value(design)
+        value = law_at(design, self.name)
         return [value] if self.row is None else list(value)
 
     def counts(self, structure: PartStructure) -> Counts:
@@ -167,7 +161,9 @@ class PartLaw(ResizableLaw):
         return (0 if self.row.optional else self.row.fewest, 1), (MOST_CHORDWISE, most)
 
     def paths(self, design: Any) -> list[str]:
-        stems = [self.name] if self.row is None else [f"{self.name}[{i}]" for i in range(len(self.value(design)))]
+        stems = (
+            [self.name] if self.row is None else [f"{self.name}[{i}]" for i in range(len(law_at(design, self.name)))]
+        )
         return [path for law, stem in zip(self.grid(design), stems, strict=True) for path in number_paths(law, stem)]
 
     def embedding(self, structure: PartStructure, counts: Counts) -> Reals:
@@ -183,7 +179,7 @@ class PartLaw(ResizableLaw):
         along, across = self.counts_of(design)
         laws = self.grid(design)
         if (along, across) == counts and all(len(law_points(law)) == across for law in laws):
-            return self.value(design)
+            return law_at(design, self.name)
         across_rows = law_basis(counts[1], COMPARED_PLACES)
         rows = np.zeros((len(laws), counts[1]))
         for i, law in enumerate(laws):
@@ -196,6 +192,13 @@ class PartLaw(ResizableLaw):
             rows = np.maximum(rows, 0.5 * least)
         found = tuple(plain_law(row) for row in rows)
         return found[0] if self.row is None else found
+
+
+def law_at(design: Any, path: str) -> Any:
+    """The law, or the row of laws, at a path."""
+    for step in re.findall(r"\w+", path):
+        design = design[int(step)] if step.isdigit() else getattr(design, step)
+    return design
 
 
 @final
@@ -231,7 +234,15 @@ def _structure(design: Any) -> PartStructure:
 
 
 def _reshaped(design: Any, structure: PartStructure) -> Any:
-    return design.changed({law.name: law.resized_value(design, law.counts(structure)) for law in _laws(design)})
+    changes = {law.name: law.resized_value(design, law.counts(structure)) for law in _laws(design)}
+    for name in [name for name in changes if name.endswith("_heights")]:
+        # the side leaves its corner as fast where its first control point is as much nearer as the knots are
+        ratio = (len(law_at(design, name)) + 1.0) / (len(changes[name]) + 1.0)
+        for tangent in (name.replace("heights", f"tangent_{way}") for way in ("in", "out")):
+            law = changes.get(tangent, law_at(design, tangent))
+            if law is not None and stations_of(law) is None:
+                changes[tangent] = plain_law(ratio * np.array(law_points(law)))
+    return design.changed(changes)
 
 
 def _richest(design: Any) -> PartStructure:

@@ -101,6 +101,8 @@ def criterion(match: Match, target: MatchTarget) -> float:
     count, points = len(match.problem.paths), np.count_nonzero(match.rows)
     if target.tolerance is not None and match.maximum <= target.tolerance:
         return float(count) - 1.0 / EXACT**2
+    if target.parameters is not None and count > target.parameters:
+        return np.inf
     return float(points * np.log(max(match.rms, EXACT) ** 2) + count * np.log(points))
 
 
@@ -116,18 +118,19 @@ def _through_points(
 ) -> Match | None:
     """The match by a contour through points, by as few as are asked for; None where there is none.
 
-    The contours begin as the nearest profiles of each kind of trailing edge.
+    The contours begin as the nearest profiles of each kind of trailing edge: that is chosen by the largest distance, as
+    few points show an edge.
     """
     some, found = task.thinned(OUTLINE_POINTS), None
     starts = {_trailing_edge(each.design): each for each in reversed(tried)}
     for count in OUTLINE_COUNTS if target.parameters is None else (target.parameters - OUTLINE_SURPLUS,):
         fresh = {edge: _outlined(some, kind, each, count, header) for edge, each in starts.items()}
-        best = min(filter(None, fresh.values()), key=lambda each: each.rms, default=None)
+        best = min(filter(None, fresh.values()), key=lambda each: each.maximum, default=None)
         if best is None:
             continue
         # a round edge may need more points to be none of several corners
         starts = {edge: starts[edge] if each is None else each for edge, each in fresh.items() if each in (None, best)}
-        found = best if found is None or best.rms < found.rms else found
+        found = best if found is None or best.maximum < found.maximum else found
         if not _is_far(found, target, OUTLINE_DEVIATION):
             break
     return found

@@ -92,7 +92,8 @@ def selected_match(
         selection = selection.with_margin()
         many = replace(many, margin_factor=selection.task.margin_factor)
     if target.parameters is not None:
-        found = selection.of_size(rich, target.parameters)
+        sized = selection.of_size(rich, target.parameters)
+        found = sized if len(sized.problem.paths) <= target.parameters else found
     elif target.tolerance is not None:
         found, reason = selection.within(rich, target.tolerance)
     else:
