@@ -36,6 +36,7 @@ EXAMPLES = (
     "propeller",
     "pump-inducer",
     "marine-propeller",
+    "morphing-airfoil",
 )
 """design files that stand in the directory in which a page's blocks run, as `bladewright new` writes them"""
 MADE_WITH_THE_SITE = {f"generated/keys-{family}.md" for family in FAMILIES} | {"generated/gallery.md"}

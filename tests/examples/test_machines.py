@@ -5,17 +5,16 @@ import pytest
 
 from bladewright.blade.design.families import prismatic
 from bladewright.files.examples import examples
-from bladewright.section.unified import UnifiedSection
 from machines import built, example
 
 NAMES = sorted(examples())
-REAL = ("aachen-stator", "nasa-rotor-67", "radial-turbine", "vki-ls89")
+REAL = ("aachen-stator", "morphing-airfoil", "nasa-rotor-67", "radial-turbine", "vki-ls89")
 OWN = tuple(name for name in NAMES if name not in REAL)
 
 
 def blade(name):
     found = example(name)
-    return built(prismatic(found) if isinstance(found, UnifiedSection) else found)
+    return built(prismatic(found) if found.dimension == 2 else found)
 
 
 def edges(name, v):
