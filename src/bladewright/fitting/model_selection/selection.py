@@ -164,8 +164,9 @@ TRIED_PARAMETERS, MOST_TRIED = 100, 4
 (`MOST_TRIED`)."""
 STAGES = 3
 """times that structures are predicted anew about the match that they have led to."""
-NEAR_RICH = 1.25
-"""largest distance that a match keeps whose misfit is no noise and of which nothing is asked, of that of a rich one."""
+NEAR_RICH, NEAR_FOUND = 1.25, 2.0
+"""largest distance that a match keeps whose misfit is no noise and of which nothing is asked: of the one predicted for
+the rich structure, and in space of the one found (`NEAR_FOUND`)."""
 NOISE_QUANTILE = 1.645
 """standard errors by which a misfit may pass the noise, which one of pure noise does once in twenty times."""
 NEAR = 5e-5
@@ -242,7 +243,7 @@ class _Selection:
         limit = np.sum(errors[best]) + np.sqrt(FOLDS) * np.std(errors[best])
         near = max(NEAR_RICH * candidates[0].largest, NEAR)
         if self.task.dimension == 3:
-            near = max(near, min(rich.maximum / model.chord, LARGEST_OPEN[3]))
+            near = max(near, min(NEAR_FOUND * rich.maximum / model.chord, LARGEST_OPEN[3]))
         # noise that is known takes the place of errors of prediction (Morozov 1966)
         noise = rich.noise_estimate.noise / model.chord * (1.0 + NOISE_QUANTILE / np.sqrt(2.0 * model.points))
         chosen = [
@@ -258,7 +259,7 @@ class _Selection:
         limit = LARGEST_OPEN[self.task.dimension] * found.model.chord
         if not has_systematic_misfit(found) or _largest(found, rich) <= limit:
             return found
-        nearer, _ = self.within(rich, limit, failures=1)
+        nearer, _ = self.within(rich, limit, failures=2)
         better = _largest(nearer, rich) < _largest(found, rich) and not _refused(nearer)
         return nearer if better else found
 
