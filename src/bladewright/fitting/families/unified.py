@@ -2,6 +2,7 @@
 
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from bladewright.blade.design.unified import UnifiedBlade
@@ -75,6 +76,10 @@ def _first_design(task: Task, structure: Structure | None, like: Design | None, 
     return first_blade(some, structure=structure, name=header.name, length_unit=header.length_unit, **row)
 
 
+def _free_as(match: Match, _: Design) -> tuple[str, ...]:
+    return match.problem.paths
+
+
 def _buildable(task: Task, match: Match, *, fewer: bool) -> tuple[Match, Any, str]:
     """What the found design builds, and a note where it is not the nearest one.
 
@@ -84,7 +89,8 @@ def _buildable(task: Task, match: Match, *, fewer: bool) -> tuple[Match, Any, st
     refusal = ""
     for margin_factor in (0.0, 1.0, 30.0, 1000.0):
         if margin_factor:
-            fresh = replace(task, margin_factor=margin_factor)
+            # what a match holds stays held
+            fresh = replace(task, margin_factor=margin_factor, free=partial(_free_as, match))
             with suppress(FitError):
                 match = searched(fresh, match.design, rounds=2, min_reduction=FINAL_REDUCTION)
         try:
