@@ -15,17 +15,18 @@ from bladewright.numerics.elementary import cross2, cumulative_length
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 
 CONTINUED = 0.5
-"""how far, in u, stream lines are continued past the edges"""
+"""how far, in u, stream lines are continued past the edges (design/first_guesses.md)"""
 SPAN: Reals = np.linspace(0.0, 1.0, 25)
 """v at which stream lines are tabulated"""
 ALONG: Reals = np.linspace(-CONTINUED, 1.0 + CONTINUED, 129)
 """u at which they are tabulated"""
 LEAST_RADIUS = 1e-3
-"""smallest radius at which m' is counted, of the largest: blades may reach the axis, where m' is infinite"""
+"""smallest radius at which m' is counted, of the largest: blades may reach the axis, where m' is infinite
+(design/first_guesses.md)"""
 LEAST_JACOBIAN = 0.02
-"""least Jacobian of a channel, of its median; below it its curves get fewer control points"""
+"""least Jacobian of a channel, of its median; below it its curves get fewer control points (design/first_guesses.md)"""
 FOLD_MARGIN = 0.03
-"""how far past the edges, in u, it may not fold: noses reach so far"""
+"""how far past the edges, in u, it may not fold: noses reach so far (design/first_guesses.md)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

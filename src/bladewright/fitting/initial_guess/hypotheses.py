@@ -15,22 +15,22 @@ from bladewright.nurbs.basis import Reals
 STATIONS: Reals = np.linspace(0.0, 1.0, 9)
 """v of the slices"""
 MOST_TRIM = 0.2
-"""most by which an edge moves to the ends of the cambers, in u"""
+"""most by which an edge moves to the ends of the cambers, in u (design/first_guesses.md)"""
 CLEAR_DISTANCE = 2e-3
-"""mean distance of the points, in chords, with which no other outline is tried"""
+"""mean distance of the points, in chords, with which no other outline is tried (design/first_guesses.md)"""
 CHANNEL = INITIAL_BLADES[1].channel
 """control points of the channel's curves"""
 LAW_COUNT = 4
-"""control points of their laws along the span"""
+"""control points of their laws along the span (design/first_guesses.md)"""
 BORDER_SHARE, BORDER_POINTS, CORNER_MARGIN = 0.06, 24, 0.12
 """share of the points (and at least `BORDER_POINTS`) beside a piece of the outline that show whether the sides meet
-there; they keep clear of its ends by `CORNER_MARGIN` of it."""
+there; they keep clear of its ends by `CORNER_MARGIN` of it (design/first_guesses.md)."""
 WALL_OPENING_RATIO = 1.4
-"""ratio of the openings from which two opposite pieces are the walls."""
+"""ratio of the openings from which two opposite pieces are the walls (design/first_guesses.md)."""
 RADIAL_SHARE = 0.05
-"""axial share of the way from edge to edge below which the rounder edge leads."""
+"""axial share of the way from edge to edge below which the rounder edge leads (design/first_guesses.md)."""
 ROUNDER_RATIO = 1.2
-"""ratio of radii from which one edge is the rounder one."""
+"""ratio of radii from which one edge is the rounder one (design/first_guesses.md)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

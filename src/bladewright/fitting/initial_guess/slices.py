@@ -20,26 +20,27 @@ from bladewright.section.camber import bernstein
 from bladewright.section.laws import law_basis
 
 TURNS = 12
-"""times that points are assigned to the sides; most clouds settle in five"""
+"""times that points are assigned to the sides; most clouds settle in five (design/first_guesses.md)"""
 RIDGE = 1e-3
-"""weight that holds coefficients which the points leave open, of the weight of all points"""
+"""weight that holds coefficients which the points leave open, of the weight of all points (design/first_guesses.md)"""
 TUKEY = 4.685
 """distance, in standard deviations, from which a point does not count (Holland and Welsch 1977)"""
 STEEPEST = np.radians(86.0)
-"""steepest angle of a chord or a camber [rad]; the family's own limit is 90 degrees"""
+"""steepest angle of a chord or a camber [rad]; the family's own limit is 90 degrees (design/first_guesses.md)"""
 BANDS, BAND_POINTS = 8, 12
-"""bands along the span that show where sections begin and end, and how they are turned, and the points of one"""
+"""bands along the span that show where sections begin and end, and how they are turned, and the points of one
+(design/first_guesses.md)"""
 PLACES: Reals = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 42)[1:-1])) / 2.0
 """places along the chord at which the half thickness is given"""
 EDGE_PLACE = 0.02
-"""place along the chord, from an edge, at which the half thickness shows the edge's radius"""
+"""place along the chord, from an edge, at which the half thickness shows the edge's radius (design/first_guesses.md)"""
 
 NOSE, LEAST_NOSE_WEIGHT, NOSE_REACH = 0.08, 0.05, 0.2
 """distance from an edge, of the chord, from which points count in full, and their weight at the edge: the nose of a
 cambered section does not point along the chord, and the middle across the chord there is not that of the section. The
-edge is the point furthest along the camber's tangent, among those within `NOSE_REACH`."""
+edge is the point furthest along the camber's tangent, among those within `NOSE_REACH` (design/first_guesses.md)."""
 EDGE_SHARE = 60
-"""one in so many points of a band stands at an edge"""
+"""one in so many points of a band stands at an edge (design/first_guesses.md)"""
 
 SpanLaw = Callable[[Reals], Reals]
 """a quantity (n,) by place along the span (n,)"""
