@@ -16,6 +16,8 @@ from bladewright.designs import Design
 from bladewright.files.families import FAMILIES as IN_FILES
 
 PACKAGE = Path(bladewright.__file__).parent
+EXTRAS = {"gmsh", "neuralfoil", "aerosandbox", "pymoo", "openmdao", "distributed", "dask", "cloudpickle"}
+"""what the package is installed without, unless an extra is asked for"""
 HEAVY = ("OCP", "cadquery", "gmsh", "matplotlib", "numba", "pydantic", "scipy")
 SOURCES = sorted(PACKAGE.rglob("*.py"))
 
@@ -40,6 +42,13 @@ def test_importing_the_package_loads_no_heavy_library() -> None:
 def test_no_room_but_cad_and_the_command_line_loads_opencascade_and_none_loads_gmsh() -> None:
     rooms = [name for name in map(module_name, SOURCES) if name.split(".")[1:2] not in (["cad"], ["cli"], ["__main__"])]
     assert not loaded_by(f"import {', '.join(rooms)}").intersection({"OCP", "cadquery", "gmsh"})
+
+
+def test_no_room_loads_an_extra_before_it_is_asked_for() -> None:
+    rooms = [name for name in map(module_name, SOURCES) if name.split(".")[1:2] != ["__main__"]]
+    # OpenMDAO's component is a class of its library, and stands in a module of its own
+    rooms.remove("bladewright.studies.openmdao")
+    assert not loaded_by(f"import {', '.join(rooms)}").intersection(EXTRAS)
 
 
 def test_the_command_line_starts_without_opencascade() -> None:
