@@ -59,8 +59,10 @@ def matched_section(
         closed = start or first_section(task.points, name=header.name, length_unit=header.length_unit)
         shape = section_shape(closed.build())
     else:
-        # a smooth contour through all points in order has no outliers
+        # a smooth contour through all points in order has no outliers, and shows both ends of its chord line
         task = replace(task, allow_outliers=False)
+        if isinstance(task.free, FreeParameters) and task.free.free is None:
+            task = replace(task, free=replace(task.free, fixed=(*task.free.fixed, "chord", "leading_edge_x")))
     parts = kind.first_parts(shape, None if like is None else like.section)
     tried = compared(task.thinned(TRIAL_POINTS), designs_of(kind, shape, parts, header, task))
     structure = None if like is None else structure_of(like)

@@ -23,6 +23,8 @@ from bladewright.section.segmented.skin import SEGMENTS
 LONGEST_CONTOUR = 2.6
 """length of the polygon of points in order around a section, of its extent from the first point, up to which they are
 taken to be in order: twice the extent and a margin for thickness and camber; unordered points are much longer [-]"""
+CLOSED = 1e-6
+"""distance of the sides' ends up to which a trailing edge is closed, of the chord: tables have six digits [-]"""
 PLACES: Reals = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 401))) / 2.0
 """s at which a side is sampled"""
 WINDOW = 0.05
@@ -97,7 +99,7 @@ def first_parts(shape: SectionShape, like: Segmented | None) -> Sequence[Segment
     closed = replace(REDUCED, trailing_edge_thickness=None)
     if shape.edge_radii[1] > 0.0:
         return [_first_part(shape, each) for each in (REDUCED, closed)]
-    return [_first_part(shape, REDUCED if length(shape.upper[-1] - shape.lower[-1]) > 0.0 else closed)]
+    return [_first_part(shape, REDUCED if length(shape.upper[-1] - shape.lower[-1]) > CLOSED else closed)]
 
 
 def _first_part(shape: SectionShape, like: Segmented) -> Segmented:
