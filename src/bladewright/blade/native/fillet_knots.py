@@ -305,11 +305,12 @@ def _reached(first: Reals, miss: Callable[[Reals, Reals], Reals], along: str, wa
     worst = int(np.argmax(error))
     if error[worst] > 1.0:
         name, given = "u" if along == "chord" else "v", " or ".join(f"{wall}_fillet" for wall in walls)
+        poles, most = len(knots) - DEGREE - 1, MOST_POLES[along == "span"]
+        why = f"at most {most} are used" if poles > most else "and more of them there do not help"
         raise _TooManyPolesError(
             f"{given}: near {name} = {places[worst]:.3f} native surfaces miss what is promised of "
-            f"them {error[worst]:.2g} times with {len(knots) - DEGREE - 1} poles along the {along}, at most "
-            f"{MOST_POLES[along == 'span']} are used: take a smaller fillet, raise the tolerance, or raise a very "
-            "small edge radius there"
+            f"them {error[worst]:.2g} times with {poles} poles along the {along}, {why}: take a smaller fillet, raise "
+            "the tolerance, or raise a very small edge radius there"
         )
     return knots
 
