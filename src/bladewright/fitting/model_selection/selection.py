@@ -251,7 +251,9 @@ class _Selection:
             for each, error in zip(candidates, np.sum(errors, axis=1), strict=True)
             if (error <= limit and each.largest <= near if has_systematic_misfit(rich) else each.rms <= noise)
         ] or candidates[:1]
-        return next(filter(None, (self._searched(model, each) for each in reversed(chosen))), rich)
+        tried = (self._searched(model, each) for each in (chosen[-1], chosen[len(chosen) // 2], chosen[0]))
+        built = (each for each in tried if each and not (self.task.dimension == 3 and _refused(each)))
+        return next(built, rich)
 
     def near_everywhere(self, rich: Match) -> Match:
         """The match that predicts well, or one with more parameters where it is far from some points."""
