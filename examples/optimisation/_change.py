@@ -1,4 +1,4 @@
-"""What both optimisations do besides their search: read a design, write verified CAD files, draw the change."""
+"""What an optimisation does besides its search: read a design, write verified CAD files, draw the change."""
 
 import json
 import sys

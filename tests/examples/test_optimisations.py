@@ -1,4 +1,4 @@
-"""Both optimisations reach what they promise, and leave a design and verified CAD files."""
+"""The optimisation reaches what it promises, and leaves a design and verified CAD files."""
 
 import json
 import runpy
@@ -11,12 +11,9 @@ from bladewright.files.reading import read_design
 
 FOLDER = Path(__file__).parents[2] / "examples" / "optimisation"
 SCRIPTS = sorted(path.stem for path in FOLDER.glob("*.py") if path.stem != "_change")
-QUICK = ("stator-throat",)
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[] if name in QUICK else [pytest.mark.slow]) for name in SCRIPTS]
-)
+@pytest.mark.parametrize("name", SCRIPTS)
 def test_an_optimisation_reaches_its_goal_and_writes_what_it_found(name, tmp_path, monkeypatch, capsys):
     monkeypatch.syspath_prepend(FOLDER)
     monkeypatch.setattr(sys, "argv", [f"{name}.py", str(tmp_path)])
