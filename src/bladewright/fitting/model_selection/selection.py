@@ -82,7 +82,7 @@ def selected_match(
     if target.open and found.maximum < near:
         rich = found
     elif target.open:
-        rich = selection.rich(found, near if task.dimension == 2 else LARGEST_OPEN[3] * found.model.chord)
+        rich = selection.rich(found, near if task.dimension == 2 else np.inf)
     else:
         rich = selection.rich(found, REWEIGHTED_GAIN * (target.tolerance or np.inf))
     if len(rich.rows) < len(several.points):
@@ -171,8 +171,8 @@ NOISE_QUANTILE = 1.645
 """standard errors by which a misfit may pass the noise, which one of pure noise does once in twenty times."""
 NEAR = 5e-5
 """largest distance, of the chord, from which rich structures get more control points where nothing is asked for."""
-LARGEST_OPEN = {2: 4e-4, 3: 6e-4}
-"""the same of a match, by dimension, and of rich structures in space, where time bounds them."""
+LARGEST_OPEN = {2: 4e-4, 3: 8e-4}
+"""the same of a match, by dimension: in space time bounds it, and rich structures stay as they are."""
 RICHER_GAIN = 0.6
 """ratio of the misfits of two rich structures above which a richer one is of no use: a third as many control points
 again bring a cubic spline nearer by (3/4)^4, a third (de Boor 1978, chapter 12)."""
@@ -261,17 +261,17 @@ class _Selection:
         limit = LARGEST_OPEN[self.task.dimension] * found.model.chord
         if not has_systematic_misfit(found) or _largest(found, rich) <= limit:
             return found
-        nearer, _ = self.within(rich, limit, failures=2)
+        nearer, _ = self.within(rich, limit)
         better = _largest(nearer, rich) < _largest(found, rich) and not _refused(nearer)
         return nearer if better else found
 
-    def within(self, rich: Match, tolerance: float, *, failures: int = MOST_FAILURES) -> tuple[Match, str]:
+    def within(self, rich: Match, tolerance: float) -> tuple[Match, str]:
         """The match of fewest parameters found that keeps a tolerance [m]; the nearest, and why, where none does."""
         if _largest(rich, rich) > tolerance and not has_systematic_misfit(rich):
             return self.well_predicted(rich), NOISE_REASON.format(1e3 * rich.noise_estimate.noise)
         best, nearest, about, wide = None, rich, rich, False
         share, failed, missed, selection = FIRST_SHARE[self.task.dimension], 0, 0, self
-        while failed < failures:
+        while failed < MOST_FAILURES:
             model = self._model(about)
             relative = tolerance / model.chord
             fewer = eliminated(model, 0, relative)
