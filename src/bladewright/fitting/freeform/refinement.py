@@ -20,12 +20,15 @@ POINTS_FOR_A_CONTROL_POINT = 2
 
 
 def matched_within(
-    net: Net, target: Target, options: Options, *, warm: bool
+    net: Net, target: Target, options: Options, *, warm: bool, near: Reals | None = None
 ) -> tuple[ShapeMatch[Net], NDArray[np.bool_], tuple[str, ...]]:
-    """The match within the largest distance that is asked for, the inliers, and a note why it is not reached."""
+    """The match within the largest distance that is asked for, the inliers, and a note why it is not reached.
+
+    Places descend from `near` (m, k) where they are given, and in each round from those of the round before.
+    """
     total, reason = 0, ""
     for _ in range(KNOT_ROUNDS):
-        match, inliers = matched_by_stages(net, target, options, warm=warm)
+        match, inliers = matched_by_stages(net, target, options, warm=warm, near=near)
         total += match.evaluations
         largest = float(match.distances.max())
         if options.tolerance is None or largest * options.extent <= options.tolerance:
@@ -34,6 +37,7 @@ def matched_within(
         if finer is None:
             break
         net, warm, reason = finer, True, f"{KNOT_ROUNDS} rounds of knots do not reach it"
+        near = match.parameters if len(match.parameters) == len(target.points) else None
         options.report(f"{len(net.points)} control points")
     far = f"the largest distance is {largest * options.extent:.3g} where {options.tolerance:.3g} was asked for"
     return replace(match, evaluations=total), inliers, (f"{far}: {reason}",)

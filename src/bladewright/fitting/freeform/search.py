@@ -45,7 +45,7 @@ EXACT = 1e-10
 """distance, of the extent, that is rounding of the places"""
 LARGEST_UNKNOWN = 30.0
 """magnitude of an unknown: control points stand within a few extents of the points, and a weight of e^30 is all that
-counts near it."""
+counts near it. What begins further off may go twice as far."""
 SHORTEST_COLUMN = 1e-4
 """length of a column of the Jacobian, of the longest, below which its unknown is scaled no further: its step is left to
 the damping."""
@@ -260,7 +260,7 @@ class Problem(ConstrainedProblem, Generic[S]):
 
     @property
     def bounds(self) -> tuple[Reals, Reals]:
-        every = LARGEST_UNKNOWN / self.sizes
+        every = np.maximum(LARGEST_UNKNOWN / self.sizes, 2.0 * np.abs(self.start))
         return -every, every
 
     def at(self, z: Reals) -> ShapeMatch[S]:
@@ -326,10 +326,13 @@ def matched(
 
 
 def matched_by_stages(
-    shape: S, target: Target, options: Options, *, warm: bool = False
+    shape: S, target: Target, options: Options, *, warm: bool = False, near: Reals | None = None
 ) -> tuple[ShapeMatch[S], NDArray[np.bool_]]:
-    """The match of a shape to points, and the inliers (m,); of a `warm` one, near already, the last stage alone."""
-    match, inliers = placed(shape, target), np.ones(len(target.points), dtype=bool)
+    """The match of a shape to points, and the inliers (m,); of a `warm` one, near already, the last stage alone.
+
+    Places are sought everywhere first, or by descent from `near` (m, k).
+    """
+    match, inliers = placed(shape, target, near), np.ones(len(target.points), dtype=bool)
     if options.robust:
         match, inliers = _without_outliers(match, options, warm=warm)
     match = _matched_by_stiffnesses(match, options, warm=warm)

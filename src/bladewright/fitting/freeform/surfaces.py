@@ -96,12 +96,14 @@ def fit_surface(
     else:
         net = net_of(replace(start, control_points=unit.scaled(start.control_points)))
     low, high = net.domain
+    # where points leave control points open, a surface continued past its edges may swing back among the points
+    near = None if start is None else net.nearest(scaled)
     if boundary == "free":
         net = net_of(_widened(_surface_of(net)))
     net = replace(net, held=HELD_BY_BOUNDARY[boundary])
     _check_numbers(net, scaled, weights_free=options.weights_free)
     target = Target(points=scaled, weights=np.ones(len(scaled)))
-    match, inliers, notes = matched_within(net, target, options, warm=start is not None)
+    match, inliers, notes = matched_within(net, target, options, warm=start is not None, near=near)
     if boundary == "free":
         first, last = (getattr(np, end)(match.parameters, axis=0) for end in ("min", "max"))
         net = replace(net_of(_cut(_surface_of(match.shape), first, last, low, high)), weighted=options.weights_free)
