@@ -108,7 +108,7 @@ def criterion(match: Match, target: MatchTarget) -> float:
     return float(points * np.log(max(match.rms, EXACT) ** 2) + count * np.log(points))
 
 
-def _is_far(match: Match, target: MatchTarget, open_limit: float = LARGEST_OPEN[2]) -> bool:
+def _is_far(match: Match, target: MatchTarget, open_limit: float = LARGEST_OPEN[0]) -> bool:
     """Whether a match is not what is asked for; `open_limit` is the largest distance where nothing is, of the chord."""
     limit = open_limit * match.model.chord if target.tolerance is None else target.tolerance
     short = target.parameters is not None and len(match.problem.paths) < target.parameters

@@ -164,15 +164,14 @@ TRIED_PARAMETERS, MOST_TRIED = 100, 4
 (`MOST_TRIED`)."""
 STAGES = 3
 """times that structures are predicted anew about the match that they have led to."""
-NEAR_RICH, NEAR_FOUND = 1.25, 2.0
-"""largest distance that a match keeps whose misfit is no noise and of which nothing is asked: of the one predicted for
-the rich structure, and in space of the one found (`NEAR_FOUND`)."""
+NEAR_RICH = 1.25
+"""largest distance that a match keeps whose misfit is no noise and of which nothing is asked, of that of a rich one."""
 NOISE_QUANTILE = 1.645
 """standard errors by which a misfit may pass the noise, which one of pure noise does once in twenty times."""
 NEAR = 5e-5
 """largest distance, of the chord, from which rich structures get more control points where nothing is asked for."""
-LARGEST_OPEN = {2: 4e-4, 3: 8e-4}
-"""the same of a match, by dimension: in space time bounds it, and rich structures stay as they are."""
+LARGEST_OPEN = (4e-4, 8e-4)
+"""the same of a match, tried in turn: rich structures of blades stay as they are, as time bounds them."""
 RICHER_GAIN = 0.6
 """ratio of the misfits of two rich structures above which a richer one is of no use: a third as many control points
 again bring a cubic spline nearer by (3/4)^4, a third (de Boor 1978, chapter 12)."""
@@ -242,8 +241,6 @@ class _Selection:
         best = int(np.argmin(np.sum(errors, axis=1)))
         limit = np.sum(errors[best]) + np.sqrt(FOLDS) * np.std(errors[best])
         near = max(NEAR_RICH * candidates[0].largest, NEAR)
-        if self.task.dimension == 3:
-            near = max(near, min(NEAR_FOUND * rich.maximum / model.chord, LARGEST_OPEN[3]))
         # noise that is known takes the place of errors of prediction (Morozov 1966)
         noise = rich.noise_estimate.noise / model.chord * (1.0 + NOISE_QUANTILE / np.sqrt(2.0 * model.points))
         chosen = [
@@ -258,12 +255,13 @@ class _Selection:
     def near_everywhere(self, rich: Match) -> Match:
         """The match that predicts well, or one with more parameters where it is far from some points."""
         found = self.well_predicted(rich)
-        limit = LARGEST_OPEN[self.task.dimension] * found.model.chord
-        if not has_systematic_misfit(found) or _largest(found, rich) <= limit:
-            return found
-        nearer, _ = self.within(rich, limit)
-        better = _largest(nearer, rich) < _largest(found, rich) and not _refused(nearer)
-        return nearer if better else found
+        for share in LARGEST_OPEN:
+            if not has_systematic_misfit(found) or _largest(found, rich) <= share * found.model.chord:
+                break
+            nearer, _ = self.within(rich, share * found.model.chord)
+            if _largest(nearer, rich) < _largest(found, rich) and not _refused(nearer):
+                found = nearer
+        return found
 
     def within(self, rich: Match, tolerance: float) -> tuple[Match, str]:
         """The match of fewest parameters found that keeps a tolerance [m]; the nearest, and why, where none does."""
