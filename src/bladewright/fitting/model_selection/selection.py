@@ -9,6 +9,7 @@ distance, or else the smallest error of prediction where whole neighbourhoods of
 
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import islice
 
 import numpy as np
 
@@ -224,8 +225,8 @@ class _Selection:
         count = min(MOST_TRIED, max(1, TRIED_PARAMETERS // most))
         for _ in range(STAGES):
             model = self._model(about)
-            tried = [self._searched(model, each) for each in best_of_size(model, most)[:count]]
-            nearest = min(filter(None, tried), key=lambda each: each.misfit, default=None)
+            shaped = filter(None, (self._searched(model, each) for each in best_of_size(model, most)))
+            nearest = min(islice(shaped, count), key=lambda each: each.misfit, default=None)
             if nearest is None or (best is not None and nearest.misfit >= best.misfit):
                 break
             best, about = nearest, self._widened(nearest)
