@@ -3,12 +3,12 @@
 A blade's control nets are linear in the points of its sections. Most laws of evolution act on the section at span
 fraction v by their value there alone: a step of the whole law gives the derivative of the section, and the derivative
 by its control point j, or its value at station j, is the weight of that number at v times it, so that one rebuild
-serves all numbers of a law. The other parameters, those of the channel above all, are stepped one by one; AT_ONCE steps
-go through one rebuild as a batch.
+serves all numbers of a law, and all inner control points of an edge of the channel. The other parameters are stepped
+one by one; AT_ONCE steps go through one rebuild as a batch.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, partial
 from itertools import islice
 from typing import Any, TypeGuard
@@ -16,6 +16,7 @@ from typing import Any, TypeGuard
 import numpy as np
 
 from bladewright.blade.design.row_design import RowDesign
+from bladewright.blade.design.spanwise_steps import SpanwiseStep, step_alone
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.end_faces import trimmed_ends
 from bladewright.blade.native.finishing import finished, stepped_finishes
@@ -24,12 +25,10 @@ from bladewright.blade.native.knots import Knots
 from bladewright.blade.native.lazy_faces import Face, LazyFaces
 from bladewright.blade.native.properties import blade_moments, middle_of, moment_gradient
 from bladewright.blade.native.refinement import mean_chord
-from bladewright.designs import Design, Law
+from bladewright.designs import Design
 from bladewright.numerics.elementary import Array, concatenated
-from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
-from bladewright.section.laws import law_weights, number_paths
 from bladewright.section.outline import EdgeDerivatives
 
 STEP = 1e-30
@@ -42,62 +41,59 @@ Nets = tuple[Array, Array]
 """Control nets, or their derivatives, of the upper and the lower side."""
 
 
-@dataclass(frozen=True)
-class LawPoint:
-    """What is stepped for the derivative by one parameter: a whole law, of which it is a control point, or itself."""
-
-    step: str
-    """path of the law, or of the parameter, that is stepped"""
-    index: int = 0
-    """index of the control point, or of the value at a station, in its law"""
-    law: Law | None = None
-    """the law; None for a parameter that belongs to no law"""
-
-    def factor(self, v: Reals) -> Reals:
-        """The derivative by the parameter over that by the whole law, at v (m,): its weight in the law there."""
-        return np.ones(len(v)) if self.law is None else law_weights(self.law, v)[:, self.index]
-
-
 def side_tangents(blade: Blade, paths: Sequence[str]) -> Iterator[Nets]:
     """Derivatives (k, n_u, n_v, 3) of the upper and the lower net by parameters, in order, at most AT_ONCE at a time.
 
     In metres per unit of the parameter's field, at the blade's knots.
     """
-    laws = blade.design.local_laws()
-    sources = [law_point(path, laws) for path in paths]
-    steps = list(dict.fromkeys(source.step for source in sources))
-    rates = np.concatenate([_rates_of_steps(blade, steps[i : i + AT_ONCE]) for i in range(0, len(steps), AT_ONCE)])
-    mirrored = [edge is None for edge in blade.exact.survey.lower_edges()]
+    steps, sources = steps_of(blade.design, paths)
+    rates, mirrored = _rates_of_steps(blade, steps), _mirrored(blade)
+    weights = [step.weights(blade.knots.sites_v) for step in steps]
     for first in range(0, len(paths), AT_ONCE):
         chunk = sources[first : first + AT_ONCE]
-        factors = np.stack([source.factor(blade.knots.sites_v) for source in chunk])
-        rows = rates[[steps.index(source.step) for source in chunk]] * factors[..., None]
+        factors = np.stack([weights[step][:, place] for step, place in chunk])
+        rows = rates[[step for step, _ in chunk]] * factors[..., None]
         yield sides_through(data_from_rates(rows, mirrored), blade.knots)
 
 
-def law_point(path: str, laws: Mapping[str, Law]) -> LawPoint:
-    """What is stepped for the derivative of a design with these local laws by one of its parameters."""
-    for step, law in laws.items():
-        if path == step or path.startswith((f"{step}[", f"{step}.values[")):
-            return LawPoint(step, number_paths(law, step).index(path), law)
-    return LawPoint(path)
+def step_tangents(blade: Blade, steps: Sequence[SpanwiseStep]) -> Nets:
+    """Derivatives (k, n_u, n_v, 3) of both nets by whole steps, each of all its parameters by the same amount."""
+    return sides_through(data_from_rates(_rates_of_steps(blade, steps), _mirrored(blade)), blade.knots)
 
 
-def _rates_of_steps(blade: Blade, steps: Sequence[str]) -> Array:
-    """Derivatives (len(steps), m, k) of the interpolation data by whole laws and single parameters, a row a section."""
-    moved = blade.exact.moved_to(stepped_design(blade.design, steps))
-    return interpolation_rates(moved.sections(blade.knots.sites_v), blade.knots, len(steps))
+def steps_of(design: RowDesign, paths: Sequence[str]) -> tuple[list[SpanwiseStep], list[tuple[int, int]]]:
+    """The steps that serve the derivatives by parameters, and for each of these its step and its place in it."""
+    places: dict[str, tuple[SpanwiseStep, int]] = {}
+    for step in design.spanwise_steps():
+        places |= {path: (step, place) for place, path in enumerate(step.paths)}
+    found = [places.get(path) or (step_alone(path), 0) for path in paths]
+    number: dict[SpanwiseStep, int] = {}
+    sources = [(number.setdefault(step, len(number)), place) for step, place in found]
+    return list(number), sources
 
 
-def stepped_design(design: RowDesign, steps: Sequence[str]) -> Any:
-    """A design with a batch (len(steps),) of complex steps, each on a whole law or a single parameter."""
+def _mirrored(blade: Blade) -> list[bool]:
+    return [edge is None for edge in blade.exact.survey.lower_edges()]
+
+
+def _rates_of_steps(blade: Blade, steps: Sequence[SpanwiseStep]) -> Array:
+    """Derivatives (len(steps), m, k) of the interpolation data by steps, a row a section."""
+    found = []
+    for first in range(0, len(steps), AT_ONCE):
+        chunk = steps[first : first + AT_ONCE]
+        moved = blade.exact.moved_to(stepped_design(blade.design, chunk))
+        found.append(interpolation_rates(moved.sections(blade.knots.sites_v), blade.knots, len(chunk)))
+    return np.concatenate(found)
+
+
+def stepped_design(design: RowDesign, steps: Sequence[SpanwiseStep]) -> Any:
+    """A design with a batch (len(steps),) of complex steps, each of all its parameters."""
     values = design.parameters()
     changes: dict[str, Any] = {}
     for place, step in enumerate(steps):
         change = np.zeros(len(steps), dtype=np.complex128)
         change[place] = STEP * 1j
-        own = (path for path in values if path == step or path.startswith((f"{step}[", f"{step}.values[")))
-        changes |= {path: values[path] + change for path in own}
+        changes |= {path: values[path] + change for path in step.paths}
     return design.changed(changes)
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 
 from bladewright.blade.design.meridional_curve import Meridian, meridian_at
+from bladewright.blade.design.spanwise_steps import SpanwiseStep, steps_of_edge, steps_of_walls
 from bladewright.designs import Part, Points, parameter
 from bladewright.errors import DesignError
 from bladewright.section import checks
@@ -35,6 +37,17 @@ class Channel(Part):
         for name, least in (("leading_edge", 2), ("trailing_edge", 2), ("hub", 0), ("shroud", 0)):
             object.__setattr__(self, name, checks.points(f"channel.{name}", getattr(self, name), least))
         checks.integer("channel.degree", self.degree, 1, 5, "a whole number is needed")
+
+    def spanwise_steps(self) -> Iterator[SpanwiseStep]:
+        """Control points whose steps go together: those of an edge, and those of hub and shroud side by side.
+
+        A stream line at v is (1 - v) hub(u) + v shroud(u), bowed by (1 - u) and u times how far the edges are off the
+        straight lines between their ends.
+        """
+        for name in ("leading_edge", "trailing_edge"):
+            yield from steps_of_edge(f"channel.{name}", len(getattr(self, name)), self.degree)
+        if len(self.hub) == len(self.shroud):
+            yield from steps_of_walls("channel.hub", "channel.shroud", len(self.hub))
 
 
 Pair = tuple[float, float]

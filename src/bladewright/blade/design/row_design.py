@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
@@ -12,6 +12,7 @@ import numpy as np
 from bladewright.blade.design.cut import Cut
 from bladewright.blade.design.disc import Disc
 from bladewright.blade.design.fillet import Fillet
+from bladewright.blade.design.spanwise_steps import SpanwiseStep
 from bladewright.designs import Design, Law, Limits, parameter
 from bladewright.errors import DesignError
 from bladewright.section import checks
@@ -86,9 +87,9 @@ class RowDesign(Design):
     organisation: str = ""
     """for the header of CAD files"""
 
-    def local_laws(self) -> Mapping[str, Law]:
-        """The laws, by path, that shape the exact section at v by their values at v alone."""
-        return {}
+    def spanwise_steps(self) -> Iterator[SpanwiseStep]:
+        """Steps of parameters that shape the exact section at v by their weights at v alone."""
+        yield from ()
 
     def __post_init__(self) -> None:
         check_labels(self)

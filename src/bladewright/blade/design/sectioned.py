@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from bladewright.blade.design.flow_path import FlowPath, increasing_spans
 from bladewright.blade.design.meridional_curve import Meridian, meridian_at
 from bladewright.blade.design.row_design import FIELDS_OF, RowDesign
+from bladewright.blade.design.spanwise_steps import SpanwiseStep, steps_of_laws
 from bladewright.blade.design.stacking import Stacking
 from bladewright.designs import Law, parameter
 from bladewright.errors import DesignError
@@ -65,13 +66,13 @@ class SectionedBlade(RowDesign):
     section: SectionFamily
     """the family's parameters, each a law along the span"""
 
-    def local_laws(self) -> Mapping[str, Law]:
+    def spanwise_steps(self) -> Iterator[SpanwiseStep]:
         """None where sections are ruled, cut, or placed without edge curves: then other sections matter too."""
         if self.skinning != "sections" or self.leading_edge is None or self.ends != ("hub", "shroud"):
-            return {}
-        position = self.leading_edge_theta if self.arrangement == "annular" else self.leading_edge_y
-        found = {FIELDS_OF[self.arrangement][1]: 0.0 if position is None else position}
-        return found | {f"section.{path}": law for path, law in named_laws(self.section)}
+            return
+        position = FIELDS_OF[self.arrangement][1]
+        yield from steps_of_laws([(position, getattr(self, position))])
+        yield from steps_of_laws((f"section.{path}", law) for path, law in named_laws(self.section))
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 from bladewright.blade.design.flow_path import Channel, FlowPath
 from bladewright.blade.design.row_design import RowDesign
+from bladewright.blade.design.spanwise_steps import SpanwiseStep, steps_of_laws
 from bladewright.designs import ChordwiseLaw, Law, parameter
 from bladewright.errors import DesignError
 from bladewright.section import checks
@@ -76,12 +77,13 @@ class UnifiedBlade(RowDesign):
     clustering: float = 1.0
     """spacing of the samples: 0 uniform, 1 cosine towards both edges [-]"""
 
-    def local_laws(self) -> Mapping[str, Law]:
-        found = {
-            name: getattr(self, name) for name in ("leading_edge_theta", "leading_edge_y", *ANGLES, *TANGENTS, *RADII)
-        }
-        rows = {name: getattr(self, name) for name in (*THICKNESSES, *WEIGHTS)}
-        return found | {f"{name}[{i}]": law for name, row in rows.items() for i, law in enumerate(row)}
+    def spanwise_steps(self) -> Iterator[SpanwiseStep]:
+        names = ("leading_edge_theta", "leading_edge_y", *ANGLES, *TANGENTS, *RADII)
+        yield from steps_of_laws((name, getattr(self, name)) for name in names)
+        for name in (*THICKNESSES, *WEIGHTS):
+            yield from steps_of_laws((f"{name}[{i}]", law) for i, law in enumerate(getattr(self, name)))
+        if self.flow_path is None and self.tip_clearance is None and self.hub_clearance is None:
+            yield from self.channel.spanwise_steps()
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -12,7 +12,7 @@ from bladewright.blade.native.blade import Blade, side_surface
 from bladewright.blade.native.interpolation import native_sides
 from bladewright.blade.native.knots import DEGREE, Knots
 from bladewright.blade.native.refinement import mean_chord, refined_knots
-from bladewright.derivatives.complex_step import STEP, law_point, side_tangents, stepped_design
+from bladewright.derivatives.complex_step import STEP, side_tangents, stepped_design, steps_of
 from bladewright.fitting.models.model import Model, ModelShape, complex_steps, model_of
 from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array, concatenated, cross2, length
@@ -115,14 +115,13 @@ class BladeModel(Model):
     def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """By the laws only: by the channel they vanish but for the walls' slopes, which are left out."""
         found = np.zeros((len(paths), *shape.edge_radius_margins.shape))
-        design, laws = shape.design, shape.design.local_laws()
-        own = [(place, law_point(path, laws)) for place, path in enumerate(paths)]
-        own = [(place, point) for place, point in own if point.law is not None]
-        steps = list(dict.fromkeys(point.step for _, point in own))
+        design, own = shape.design, [place for place, path in enumerate(paths) if not path.startswith("channel.")]
+        steps, sources = steps_of(design, [paths[place] for place in own])
         plane = shape.exact.moved_to(stepped_design(design, steps)).sections(RADIUS_STATIONS).plane
         rates = np.imag(_edge_radius_margins(design, plane.camber, plane.upper, plane.lower)) / STEP
-        for place, point in own:
-            found[place] = rates[:, steps.index(point.step)] * point.factor(RADIUS_STATIONS)
+        weights = [step.weights(RADIUS_STATIONS) for step in steps]
+        for place, (step, number) in zip(own, sources, strict=True):
+            found[place] = rates[:, step] * weights[step][:, number]
         return found
 
     def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
