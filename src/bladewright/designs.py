@@ -2,7 +2,7 @@
 
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
@@ -66,6 +66,13 @@ class Part:
 
         Raises DesignError where the path does not exist or the value is refused.
         """
+        return self._changed(path, value, replace)
+
+    def stepped(self, path: str | Mapping[str, Any], value: Any = None) -> Self:
+        """The same for values with the real parts that they have: what those have passed is not checked again."""
+        return self._changed(path, value, _unchecked)
+
+    def _changed(self, path: str | Mapping[str, Any], value: Any, made: Callable[..., Any]) -> Self:
         names = [each.name for each in fields(self)]
         put: dict[str, list[_Change]] = {}
         for where, what in ({path: value} if isinstance(path, str) else path).items():
@@ -77,8 +84,9 @@ class Part:
         parts = {}
         for name, changes in put.items():
             with naming(name, getattr(self, name)):
-                parts[name] = _with(getattr(self, name), changes)
-        return replace(self, **parts)
+                parts[name] = _with(getattr(self, name), changes, made)
+        changed: Self = made(self, **parts)
+        return changed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -225,8 +233,16 @@ _Change = tuple[list[str | int], Any, str]
 """steps from a node, the value there, and the whole path"""
 
 
-def _with(node: Any, changes: list[_Change]) -> Any:
-    """A node with several changes, of which later ones go before earlier ones."""
+def _unchecked(part: Part, /, **changes: Any) -> Part:
+    """The same as `replace`, without the checks of the constructor."""
+    found = object.__new__(type(part))
+    vars(found).update({name: value for name, value in vars(part).items() if name in part.__dataclass_fields__})
+    vars(found).update(changes)
+    return found
+
+
+def _with(node: Any, changes: list[_Change], made: Callable[..., Any]) -> Any:
+    """A node with several changes, of which later ones go before earlier ones; `made` makes changed parts."""
     for number in reversed(range(len(changes))):
         steps, value, _ = changes[number]
         if not steps:
@@ -242,13 +258,13 @@ def _with(node: Any, changes: list[_Change]) -> Any:
     if not groups:
         return node
     if isinstance(node, tuple) and not isinstance(node, Point):
-        return tuple(_with(item, groups[place]) if place in groups else item for place, item in enumerate(node))
+        return tuple(_with(item, groups[place], made) if place in groups else item for place, item in enumerate(node))
     parts: dict[str, Any] = {}
     for step, group in groups.items():
         part = getattr(node, str(step))
         with naming(str(step), part):
-            parts[str(step)] = _with(part, group)
-    return node._replace(**parts) if isinstance(node, Point) else replace(node, **parts)
+            parts[str(step)] = _with(part, group, made)
+    return node._replace(**parts) if isinstance(node, Point) else made(node, **parts)
 
 
 def _check_step(node: Any, step: str | int, path: str) -> None:

@@ -13,6 +13,7 @@ from bladewright.errors import DerivativeError, DesignError
 from bladewright.nurbs.curvature import surface_curvature
 from machines import built
 from machines.coarse import CASCADE, CLEARED, ROTOR, SECTION
+from machines.families import FAMILIES
 
 U, V = np.linspace(0.0, 1.0, 7)[:, None], np.linspace(0.0, 1.0, 5)
 MILLIMETRE = 1e-3
@@ -20,6 +21,13 @@ MILLIMETRE = 1e-3
 
 def lengths_of(design):
     return [path for path in design.parameters() if unit_at(design, path) == "length"]
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_a_design_that_carries_a_step_is_the_one_that_is_checked_again(name):
+    for path, value in FAMILIES[name].parameters().items():
+        carrying = value + 1e-30j
+        assert FAMILIES[name].stepped(path, carrying) == FAMILIES[name].changed(path, carrying) != FAMILIES[name]
 
 
 def central(design, base, path, quantity, step):

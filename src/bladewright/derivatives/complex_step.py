@@ -94,7 +94,7 @@ def stepped_design(design: RowDesign, steps: Sequence[SpanwiseStep]) -> Any:
         change = np.zeros(len(steps), dtype=np.complex128)
         change[place] = STEP * 1j
         changes |= {path: values[path] + change for path in step.paths}
-    return design.changed(changes)
+    return design.stepped(changes)
 
 
 def interpolation_rates(sections: Any, knots: Knots, count: int) -> Array:
@@ -131,27 +131,25 @@ def stepped(design: Design, base: Any, paths: Sequence[str]) -> Iterator[Any]:
     """
     values = design.parameters()
     if is_finished(base):
-        plain, own_moments = base.plain, _SteppedMoments(base)
+        plain, own_moments, finish = base.plain, _SteppedMoments(base), stepped_finishes(base)
         own = plain.design.parameters()
         carrying = stepped(plain.design, plain, [path for path in paths if path in own])
         for first in range(0, len(paths), AT_ONCE):
             chunk = paths[first : first + AT_ONCE]
             blades = [next(carrying) if path in own else plain for path in chunk]
-            for made in stepped_finishes(
-                base, blades, [base.design.changed(path, values[path] + STEP * 1j) for path in chunk]
-            ):
+            for made in finish(blades, [base.design.stepped(path, values[path] + STEP * 1j) for path in chunk]):
                 yield replace(made, moments=partial(own_moments, _rates_of(base, made)))
         return
     if not two_sided(base):
         for path in paths:
-            yield built(design.changed(path, values[path] + STEP * 1j), getattr(base, "knots", None))
+            yield built(design.stepped(path, values[path] + STEP * 1j), getattr(base, "knots", None))
         return
     rows, moments = iter(paths), _SteppedMoments(base)
     for tangents in side_tangents(base, paths):
         for pair in zip(*tangents, strict=True):
             path = next(rows)
             nets = [side.control_points + STEP * 1j * rate for side, rate in zip(base.sides, pair, strict=True)]
-            blade = _blade(base, design.changed(path, values[path] + STEP * 1j), nets[0], nets[1])
+            blade = _blade(base, design.stepped(path, values[path] + STEP * 1j), nets[0], nets[1])
             yield replace(blade, moments=partial(moments, dict(zip(("upper", "lower"), pair, strict=True))))
 
 

@@ -91,7 +91,14 @@ def checked_knots(knots: ArrayLike, degree: int, count: int, name: str) -> Reals
     """
     if np.iscomplexobj(knots):
         raise GeometryError(f"{name} are complex: knots must be real; hold them fixed while differentiating")
-    values = np.array(knots, dtype=np.float64)
+    values = np.asarray(knots, dtype=np.float64)
+    return _checked(values.tobytes(), values.shape, degree, count, name)
+
+
+@lru_cache(maxsize=128)
+def _checked(knots: bytes, shape: tuple[int, ...], degree: int, count: int, name: str) -> Reals:
+    """The same, for knots that many shapes have."""
+    values = np.frombuffer(knots).reshape(shape)
     if degree < 1:
         raise GeometryError(f"degree {degree} was asked for with {name}: it must be at least 1")
     if count < degree + 1:
@@ -117,7 +124,6 @@ def checked_knots(knots: ArrayLike, degree: int, count: int, name: str) -> Reals
             f"{name} = {values.tolist()} repeat a knot too often: at most {degree} times inside, "
             f"{degree + 1} times at the ends"
         )
-    values.setflags(write=False)
     return values
 
 

@@ -1,5 +1,7 @@
 """Control points of a spline on other knots, by the blossom (polar form) of its polynomial pieces."""
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -27,6 +29,7 @@ def blossom_matrix(knots: Reals, degree: int, span: NDArray[np.intp], arguments:
     matrix = np.zeros((rows, count))
     columns = span[:, None] - degree + np.arange(degree + 1)
     matrix[np.arange(rows)[:, None], columns] = local[:, degree]
+    matrix.setflags(write=False)
     return matrix
 
 
@@ -38,7 +41,13 @@ def knot_change(knots: Reals, degree: int, target: Reals) -> Reals:
     piece in the middle of its support, so that knot insertion only takes convex combinations (Goldman and Lyche 1993,
     chapter 1).
     """
-    return _blossoms(knots, degree, target, degree, _windows(target, degree))
+    return _knot_change(knots.tobytes(), degree, target.tobytes())
+
+
+@lru_cache(maxsize=128)
+def _knot_change(knots: bytes, degree: int, target: bytes) -> Reals:
+    on = np.frombuffer(target)
+    return _blossoms(np.frombuffer(knots), degree, on, degree, _windows(on, degree))
 
 
 def elevation(knots: Reals, degree: int) -> tuple[Reals, Reals]:

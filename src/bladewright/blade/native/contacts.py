@@ -147,6 +147,12 @@ class Contacts(FrozenRecord):
         places = {"v": self.v[which], "t": self.t[which], "across": self.across[which]}
         return Contacts(sites=self.sites.picked(which), **sizes, **places, residual=self.residual[which])
 
+    def and_those(self, others: Contacts) -> Contacts:
+        """These and others."""
+        names = ("on_blade", "on_wall", "v", "t", "across", "residual")
+        both = {name: np.concatenate([getattr(self, name), getattr(others, name)]) for name in names}
+        return Contacts(sites=self.sites.and_those(others.sites), **both)
+
     def between(self, sites: Sites) -> Reals:
         """v, t and theta (m, 3) near those at other sites, linear between these."""
         known = np.real(np.stack([self.v, self.t, self.across], axis=-1))
@@ -177,17 +183,38 @@ def contacts(
     with np.errstate(all="ignore"):
         start = _grown(*real, sites, own, end) if near is None else near.between(sites)
         x, residual = _settled(*real, sites, own, start)
-    found: Array = x
+    found = _placed(sites, own, x, residual)
     if section.stepped or wall.stepped or any(map(np.iscomplexobj, sizes)):
-        slopes = _differences(*real, sites, own, x)[1]
-        found = x - 1j * _solved(slopes, np.imag(_differences(section, wall, sites, sizes, x)[0]))
+        return stepped_contacts(section, wall, found, sizes, slopes(*real, found))
+    return found
+
+
+def slopes(section: ClosedSection, wall: Wall, found: Contacts) -> Array:
+    """Derivatives (k, 3, 3) by v, t and theta of the distances between the two centres of real contacts."""
+    x = np.stack([found.v, found.t, found.across], axis=-1)
+    return _differences(section, wall, found.sites, (found.on_blade, found.on_wall), x)[1]
+
+
+def stepped_contacts(
+    section: ClosedSection, wall: Wall, real: Contacts, sizes: tuple[Array, Array], slopes: Array
+) -> Contacts:
+    """Contacts with a step, from the real ones and their `slopes`, by one more of Newton's steps."""
+    sites, v, t, across = real.sites, real.v, real.t, real.across
+    normals = section.normal(sites, v), wall.normal(t, across)
+    centres = section.derivative(sites, v) + sizes[0][:, None] * normals[0]
+    miss = centres - wall.point(t, across) - sizes[1][:, None] * normals[1]
+    x = np.stack([v, t, across], axis=-1) - 1j * _solved(slopes, np.imag(miss))
+    return _placed(sites, sizes, x, real.residual)
+
+
+def _placed(sites: Sites, sizes: tuple[Array, Array], x: Array, residual: Reals) -> Contacts:
     return Contacts(
         sites=sites,
         on_blade=sizes[0],
         on_wall=sizes[1],
-        v=found[:, 0],
-        t=found[:, 1],
-        across=found[:, 2],
+        v=x[:, 0],
+        t=x[:, 1],
+        across=x[:, 2],
         residual=residual,
     )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -13,7 +13,7 @@ from bladewright.blade.native.end_cut import cut_ends
 from bladewright.blade.native.fillet import filleted
 from bladewright.blade.native.knots import Knots
 from bladewright.blade.native.side_corners import side_corner
-from bladewright.blade.native.stepped_fillet import stepped_blades
+from bladewright.blade.native.stepped_fillet import SteppedFillets
 from bladewright.errors import DesignError
 
 if TYPE_CHECKING:
@@ -77,14 +77,17 @@ def _after(
     return blade
 
 
-def stepped_finishes(base: Blade, plains: Sequence[Blade], designs: Sequence[RowDesign]) -> Iterator[Blade]:
-    """The finished blades of designs, at the knots of `base`, from plain ones that carry a complex step each.
+def stepped_finishes(base: Blade) -> Callable[[Sequence[Blade], Sequence[RowDesign]], list[Blade]]:
+    """Finishes plain blades that carry a complex step each, as their designs ask, at the knots of `base`.
 
     They are cut one by one, and get their fillets all at once.
     """
     wanted = list(zip(finishes(base.design), base.knots.chain[1:], strict=True))
-    if wanted[-1][0] is not _filleted:
-        yield from (_after(*each, wanted) for each in zip(plains, designs, strict=True))
-        return
-    cut = [_after(*each, wanted[:-1]) for each in zip(plains, designs, strict=True)]
-    yield from stepped_blades(base, cut, designs)
+    fillets = SteppedFillets(base) if wanted[-1][0] is _filleted else None
+    cuts = wanted if fillets is None else wanted[:-1]
+
+    def finish(plains: Sequence[Blade], designs: Sequence[RowDesign]) -> list[Blade]:
+        cut = [_after(*each, cuts) for each in zip(plains, designs, strict=True)]
+        return cut if fillets is None else fillets(cut, designs)
+
+    return finish

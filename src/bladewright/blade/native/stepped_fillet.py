@@ -16,7 +16,7 @@ import numpy as np
 
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.closed_section import ClosedSection, SectionSplines, Sites
-from bladewright.blade.native.contacts import Wall, contacts
+from bladewright.blade.native.contacts import Contacts, Wall, slopes, stepped_contacts
 from bladewright.blade.native.fillet import about_corners, around_wall, cut_sides, filleted
 from bladewright.blade.native.fillet_knots import FilletKnots
 from bladewright.blade.native.lazy_faces import LazyFaces
@@ -168,32 +168,47 @@ class SteppedTouch(FrozenRecord):
         return _beside(np.imag(values), self.touch.count)
 
 
-def stepped_touches(
-    real: Rolled, sections: Sequence[ClosedSection], balls: Sequence[Mapping[str, Ball]]
-) -> dict[str, SteppedTouch]:
-    """By the wall, of blades whose real balls are known."""
-    section, count = real.section, len(sections)
-    steps = _together(sections, section)
-    own = SteppedSection(
-        upper=section.upper, lower=section.lower, smooth=section.smooth, blunt=section.blunt, steps=steps, count=count
-    )
-    one = real.sites.and_those(section.corner_sites)
-    sites = Sites(side=np.tile(one.side, count), u=np.tile(one.u, count))
-    here, corners = np.split(np.arange(len(sites)).reshape(count, -1), [len(real.sites)], axis=1)
-    found = {}
-    for wall, known in real.touches.items():
-        each, first = [ball[wall] for ball in balls], known.ball.wall
-        lines = [np.imag(ball.wall.meridian.control_points) for ball in each]
-        stepped = SteppedWall(
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RealTouch(FrozenRecord):
+    """A ball of the real blade at sites and corners, and what one of Newton's steps from there needs."""
+
+    touch: Touch
+    everywhere: Contacts
+    """at the sites, and then at the corners"""
+    slopes: Array
+    """(k, 3, 3) there"""
+
+    @classmethod
+    def of(cls, touch: Touch) -> RealTouch:
+        """Those of a touch."""
+        both = touch.found.and_those(touch.corners)
+        return cls(touch=touch, everywhere=both, slopes=slopes(touch.section, touch.ball.wall, both))
+
+    def stepped(self, sections: ClosedSection, balls: Sequence[Ball]) -> SteppedTouch:
+        """The balls of blades that carry a step, `sections` their steps side by side."""
+        section, first, count = self.touch.section, self.touch.ball.wall, len(balls)
+        lines = [np.imag(ball.wall.meridian.control_points) for ball in balls]
+        wall = SteppedWall(
             meridian=first.meridian,
             revolved=first.revolved,
             inward=first.inward,
             steps=replace(first.meridian, control_points=np.concatenate(lines, axis=-1)),
             count=count,
         )
-        ball = replace(known.ball, wall=stepped, sizes=partial(_sizes, each))
-        touched = contacts(own, stepped, sites, ball.sizes(sites), ball.end, known.found)
-        touched = with_poles(section, touched, count)
+        own = SteppedSection(
+            upper=section.upper,
+            lower=section.lower,
+            smooth=section.smooth,
+            blunt=section.blunt,
+            steps=sections,
+            count=count,
+        )
+        one = len(self.everywhere.sites)
+        all_of_them = self.everywhere.picked(np.tile(np.arange(one), count))
+        ball = replace(self.touch.ball, wall=wall, sizes=partial(_sizes, balls))
+        sizes, repeated = ball.sizes(all_of_them.sites), np.tile(self.slopes, (count, 1, 1))
+        touched = with_poles(section, stepped_contacts(own, wall, all_of_them, sizes, repeated), count)
+        here, corners = np.split(np.arange(count * one).reshape(count, one), [len(self.touch.found.sites)], axis=1)
         touch = StepsTouch(
             ball=ball,
             section=own,
@@ -201,8 +216,7 @@ def stepped_touches(
             corners=touched.picked(corners.ravel()),
             count=count,
         )
-        found[wall] = SteppedTouch(touch=touch, section=steps)
-    return found
+        return SteppedTouch(touch=touch, section=sections)
 
 
 def _sizes(balls: Sequence[Ball], sites: Sites) -> tuple[Array, Array]:
@@ -229,52 +243,63 @@ def _together(sections: Sequence[ClosedSection], like: ClosedSection) -> ClosedS
     return replace(like, upper=upper, lower=lower, blunt=FrozenMapping(faces))
 
 
-def stepped_blades(base: Blade, blades: Sequence[Blade], designs: Sequence[RowDesign]) -> list[Blade]:
-    """The blades of designs with fillets, each from the blade before it that carries a step.
+class SteppedFillets:
+    """Lays the fillets of a blade into others that carry a step, at its knots."""
 
-    `base` is that of the real design, whose knots are held. Ends are made when one is first used.
-    """
-    count, knots = len(blades), cast(FilletKnots, base.knots)
-    whole = with_native_edges(cast(Blade, base.before))
-    section = closed_section(whole)
-    balls = balls_of(whole, section, base.design)
-    real = Rolled.at(section, balls, cast(SectionSplines, knots.splines).sites, knots.near)
-    wholes = [with_native_edges(blade) for blade in blades]
-    sections = [section_like(section, blade) for blade in wholes]
-    own = [balls_of(*each, balls) for each in zip(wholes, sections, designs, strict=True)]
-    touches = stepped_touches(real, sections, own)
-    steps = cut_sides(_together(sections, section), knots)
-    for wall, touch in touches.items():
-        steps |= around_wall(wall, touch, knots)
-    turning = {wall: knots.turning(wall, touch) for wall, touch in real.touches.items()}
-    nets = {name: np.split(face.control_points, count, axis=-1) for name, face in steps.items()}
-    found = []
-    for number, (blade, design) in enumerate(zip(blades, designs, strict=True)):
-        faces = {name: _with_steps(base, name, each[number]) for name, each in nets.items()}
+    def __init__(self, base: Blade) -> None:
+        self.base, self.knots = base, cast(FilletKnots, base.knots)
+        whole = with_native_edges(cast(Blade, base.before))
+        self.section = closed_section(whole)
+        self.balls = balls_of(whole, self.section, base.design)
+        sites = cast(SectionSplines, self.knots.splines).sites
+        real = Rolled.at(self.section, self.balls, sites, self.knots.near)
+        self.touches = {wall: RealTouch.of(touch) for wall, touch in real.touches.items()}
+        self.turning = {wall: self.knots.turning(wall, touch) for wall, touch in real.touches.items()}
+
+    def __call__(self, blades: Sequence[Blade], designs: Sequence[RowDesign]) -> list[Blade]:
+        """The blades of designs, each from the blade before it. Ends are made when one is first used."""
+        base, knots, count = self.base, self.knots, len(blades)
+        wholes = [with_native_edges(blade) for blade in blades]
+        sections = [section_like(self.section, blade) for blade in wholes]
+        balls = [balls_of(*each, self.balls) for each in zip(wholes, sections, designs, strict=True)]
+        together = _together(sections, self.section)
+        touches = {wall: touch.stepped(together, [own[wall] for own in balls]) for wall, touch in self.touches.items()}
+        steps = cut_sides(together, knots)
         for wall, touch in touches.items():
-            at_corners = touch.touch.corners.picked(np.split(np.arange(len(touch.touch.corners.sites)), count)[number])
-            mine = Touch(ball=own[number][wall], section=sections[number], found=at_corners, corners=at_corners)
-            about = about_corners(wall, knots, knots.turning(wall, mine, turning[wall]), faces)
-            faces |= {name: _with_steps(base, name, np.imag(face.control_points)) for name, face in about.items()}
-        finished = cache(partial(filleted, blade, design, knots))
-        found.append(
-            replace(
-                base,
-                design=design,
-                surfaces=LazyFaces(faces, tuple(base.surfaces), partial(_of, finished, "surfaces")),
-                exact=blade.exact,
-                before=blade,
-                moments=None,
-                outlines=LazyFaces({}, tuple(base.outlines), partial(_of, finished, "outlines")),
-                walls=LazyFaces({}, tuple(base.walls), partial(_of, finished, "walls")),
+            steps |= around_wall(wall, touch, knots)
+        nets = {name: np.split(face.control_points, count, axis=-1) for name, face in steps.items()}
+        found = []
+        for number, (blade, design) in enumerate(zip(blades, designs, strict=True)):
+            faces = {name: _with_steps(base, name, each[number]) for name, each in nets.items()}
+            for wall, pivots in self.turning.items():
+                if not pivots:
+                    continue
+                corners = touches[wall].touch.corners
+                at_corners = corners.picked(np.split(np.arange(len(corners.sites)), count)[number])
+                mine = Touch(ball=balls[number][wall], section=sections[number], found=at_corners, corners=at_corners)
+                about = about_corners(wall, knots, knots.turning(wall, mine, pivots), faces)
+                faces |= {name: _with_steps(base, name, np.imag(face.control_points)) for name, face in about.items()}
+            finished = cache(partial(filleted, blade, design, knots))
+            found.append(
+                replace(
+                    base,
+                    design=design,
+                    surfaces=LazyFaces(faces, tuple(base.surfaces), partial(_of, finished, "surfaces")),
+                    exact=blade.exact,
+                    before=blade,
+                    moments=None,
+                    outlines=LazyFaces({}, tuple(base.outlines), partial(_of, finished, "outlines")),
+                    walls=LazyFaces({}, tuple(base.walls), partial(_of, finished, "walls")),
+                )
             )
-        )
-    return found
+        return found
 
 
 def _with_steps(base: Blade, name: str, steps: Array) -> Surface:
     face = cast(Surface, base.surfaces[name])
-    return replace(face, control_points=face.control_points + 1j * steps)
+    net = face.control_points.astype(np.complex128)
+    net.imag = steps
+    return replace(face, control_points=net)
 
 
 def _of(whole: Callable[[], Blade], name: str) -> Mapping[str, Any]:
