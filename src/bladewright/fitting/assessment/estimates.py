@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial import cKDTree
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from bladewright.fitting.assessment.result import Estimate
 from bladewright.fitting.clouds.thinning import random_subset
@@ -67,7 +67,7 @@ def parameter_estimates(match: Match) -> ParameterEstimates:
     deviations = np.sqrt(np.diag(scaled))
     deviations[np.any(np.abs(turns[~known]) > NULL_DIRECTION_SHARE, axis=0)] = np.inf
     covariance = scaled * np.outer(size, size)
-    factor = float(student.ppf(0.5 + CONFIDENCE / 2.0, left))
+    factor = float(stdtrit(left, 0.5 + CONFIDENCE / 2.0))
     values_now = problem.values_of(match.design)
     low, high = problem.scales.low, problem.scales.high
     estimates = []

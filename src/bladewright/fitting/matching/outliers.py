@@ -57,9 +57,9 @@ SPIKE_SLOPE, SPIKE_NEIGHBOURS = 2.0, 0.1
 which they lie on the surface (`SPIKE_NEIGHBOURS`)."""
 LARGEST_OUTLIER_SHARE = 0.15
 """share of outliers from which it is the design that lies off, and all points count as inliers."""
-LOCAL_POINTS, LOCAL_SITES = 128, 5000
-"""points around each of `LOCAL_SITES` sites whose noise and misfit are taken to be alike: a quartile of so many is
-known to 15 %, and few enough follow a scanner whose noise varies."""
+LOCAL_POINTS, LOCAL_OVERLAP = 128, 16
+"""points around a site whose noise and misfit are taken to be alike: a quartile of so many is known to 15 %, and few
+enough follow a scanner whose noise varies; and how many sites a point is around, about (`LOCAL_OVERLAP`)."""
 DEVIATION_OVER_QUARTILE = 3.1384
 """standard deviation of normal noise over the lower quartile of its magnitude, 1 / Phi^-1(5/8): the points of an end
 face beside a side, half of all there, spoil it less than the median."""
@@ -176,7 +176,7 @@ def _short_of_ends(past: NDArray[np.bool_], level: NDArray[np.bool_], footpoints
 
 def _surroundings(around: Neighbourhood) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """The points (m, k) around each of m sites, and the site (n,) of every point."""
-    sites = even_subset(around.places, LOCAL_SITES)
+    sites = even_subset(around.places, max(1, LOCAL_OVERLAP * len(around.places) // LOCAL_POINTS))
     near = cKDTree(around.places).query(around.places[sites], k=min(LOCAL_POINTS, len(around.places)))[1]
     return near.reshape(len(sites), -1), cKDTree(around.places[sites]).query(around.places)[1]
 
