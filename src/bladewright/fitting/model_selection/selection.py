@@ -21,7 +21,7 @@ from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, ev
 from bladewright.fitting.model_selection.elimination import PREDICTED, best_of_size, eliminated, reweighted
 from bladewright.fitting.model_selection.match_target import MatchTarget
 from bladewright.fitting.model_selection.prediction import FOLDS, LinearModel, Prediction, folds_of
-from bladewright.fitting.model_selection.reshaping import reshaped, with_feasible_edges
+from bladewright.fitting.model_selection.reshaping import Counts, reshaped, with_feasible_edges
 from bladewright.fitting.model_selection.rich_structures import rich_structure, wider_structure
 from bladewright.fitting.model_selection.structure import Structure, structure_of
 
@@ -222,10 +222,11 @@ class _Selection:
     def of_size(self, rich: Match, most: int) -> Match:
         """The match of at most so many parameters that predictions lead to."""
         best, about = None, rich
-        count = min(MOST_TRIED, max(1, TRIED_PARAMETERS // most))
+        count, known = min(MOST_TRIED, max(1, TRIED_PARAMETERS // most)), dict[tuple[Counts, ...], Match | None]()
         for _ in range(STAGES):
             model = self._model(about)
-            shaped = filter(None, (self._searched(model, each) for each in best_of_size(model, most)))
+            predicted = best_of_size(model, most)
+            shaped = filter(None, (self._searched_once(model, each, known) for each in predicted))
             nearest = min(islice(shaped, count), key=lambda each: each.misfit, default=None)
             if nearest is None or (best is not None and nearest.misfit >= best.misfit):
                 break
@@ -313,6 +314,14 @@ class _Selection:
             return searched(self.task, design, noise=match.rms, rounds=0)
         except (DesignError, FitError):
             return match
+
+    def _searched_once(
+        self, model: LinearModel, prediction: Prediction, known: dict[tuple[Counts, ...], Match | None]
+    ) -> Match | None:
+        """The same, or what is known of the structure."""
+        if prediction.counts not in known:
+            known[prediction.counts] = self._searched(model, prediction)
+        return known[prediction.counts]
 
     def _searched(self, model: LinearModel, prediction: Prediction) -> Match | None:
         """The match of a predicted structure; None where it has no shape."""
