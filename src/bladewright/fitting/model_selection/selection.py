@@ -227,11 +227,12 @@ class _Selection:
             model = self._model(about)
             predicted = best_of_size(model, most)
             shaped = filter(None, (self._searched_once(model, each, known) for each in predicted))
-            nearest = min(islice(shaped, count), key=lambda each: each.misfit, default=None)
+            built = (each for each in islice(shaped, MOST_TRIED) if not (self.task.dimension == 3 and _refused(each)))
+            nearest = min(islice(built, count), key=lambda each: each.misfit, default=None)
             if nearest is None or (best is not None and nearest.misfit >= best.misfit):
                 break
             best, about = nearest, self._widened(nearest)
-        return best or rich
+        return best or min(filter(None, known.values()), key=lambda each: each.misfit, default=rich)
 
     def well_predicted(self, rich: Match) -> Match:
         """The match of fewest parameters that predicts points left out as well as any, and is well conditioned."""
