@@ -225,8 +225,13 @@ class _Selection:
         count, known = min(MOST_TRIED, max(1, TRIED_PARAMETERS // most)), dict[tuple[Counts, ...], Match | None]()
         for _ in range(STAGES):
             model = self._model(about)
-            predicted = best_of_size(model, most)
-            shaped = filter(None, (self._searched_once(model, each, known) for each in predicted))
+
+            def once(each: Prediction, model: LinearModel = model) -> Match | None:
+                if each.counts not in known:
+                    known[each.counts] = self._searched(model, each)
+                return known[each.counts]
+
+            shaped = filter(None, map(once, best_of_size(model, most)))
             built = (each for each in islice(shaped, MOST_TRIED) if not (self.task.dimension == 3 and _refused(each)))
             nearest = min(islice(built, count), key=lambda each: each.misfit, default=None)
             if nearest is None or (best is not None and nearest.misfit >= best.misfit):
@@ -315,14 +320,6 @@ class _Selection:
             return searched(self.task, design, noise=match.rms, rounds=0)
         except (DesignError, FitError):
             return match
-
-    def _searched_once(
-        self, model: LinearModel, prediction: Prediction, known: dict[tuple[Counts, ...], Match | None]
-    ) -> Match | None:
-        """The same, or what is known of the structure."""
-        if prediction.counts not in known:
-            known[prediction.counts] = self._searched(model, prediction)
-        return known[prediction.counts]
 
     def _searched(self, model: LinearModel, prediction: Prediction) -> Match | None:
         """The match of a predicted structure; None where it has no shape."""
