@@ -2,6 +2,7 @@
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import solve_banded
 
 from bladewright.numerics.elementary import Array
 
@@ -17,3 +18,15 @@ def solved(matrix: NDArray[np.float64], values: Array) -> Array:
         return np.asarray(inverse @ values)
     found: Array = inverse @ np.ascontiguousarray(values).view(np.float64)
     return found.view(np.complex128)
+
+
+def banded_solved(matrix: NDArray[np.float64], values: Array) -> Array:
+    """The same for a large matrix whose entries lie near its diagonal, by elimination within its bands."""
+    rows, columns = np.nonzero(matrix)
+    below, above = int(np.max(rows - columns)), int(np.max(columns - rows))
+    bands = np.zeros((below + above + 1, len(matrix)))
+    bands[above + rows - columns, columns] = matrix[rows, columns]
+    right = np.moveaxis(values, -2, 0)
+    flat = np.ascontiguousarray(right).reshape(len(matrix), -1)
+    found = solve_banded((below, above), bands, flat.view(np.float64), check_finite=False)
+    return np.moveaxis(np.ascontiguousarray(found).view(flat.dtype).reshape(right.shape), 0, -2)

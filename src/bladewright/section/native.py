@@ -9,7 +9,7 @@ import numpy as np
 from bladewright.errors import DesignError
 from bladewright.frozen import FrozenMapping, FrozenRecord
 from bladewright.numerics.elementary import Array, angle, concatenated, dot, frozen
-from bladewright.numerics.solving import solved
+from bladewright.numerics.solving import banded_solved
 from bladewright.nurbs.basis import Reals, basis, breaks, greville, knots_with_joints
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.transform import transformed
@@ -56,13 +56,9 @@ def native_curves(
     where the tolerance is not reached within 400 poles.
     """
     knots = knots_for(outline, tolerance) if knots is None else knots
-    upper, lower = _sides(outline, knots.sides)
-    camber = _camber(outline, knots.camber, knots.camber_places)
-    curves = [
-        Curve(control_points=points, knots=on, degree=DEGREE)
-        for points, on in ((upper, knots.sides), (lower, knots.sides), (camber, knots.camber))
-    ]
-    return curves[0], curves[1], curves[2]
+    sides = _sides(outline, knots.sides)
+    camber = _interpolated(_single(outline.camber(knots.camber_places)), knots.camber)
+    return _curve(sides[:, 0], knots.sides), _curve(sides[:, 1], knots.sides), _curve(camber, knots.camber)
 
 
 def knots_for(outline: Outline, tolerance: float) -> SectionKnots:
@@ -72,8 +68,9 @@ def knots_for(outline: Outline, tolerance: float) -> SectionKnots:
     arc = ArcLength(lambda s: np.real(_single(outline.camber(s))), [0.0, *(s for s, _ in joints), 1.0])
 
     def camber_error(knots: Reals, w: Reals) -> Reals:
-        controls = _camber(outline, knots, arc.places(greville(knots, DEGREE)))
-        return _distance(basis(knots, DEGREE, w) @ controls, _single(outline.camber(arc.places(w))))
+        line = _single(outline.camber(arc.places(np.concatenate([greville(knots, DEGREE), w]))))
+        controls = _interpolated(line[: -len(w)], knots)
+        return _distance(_curve(controls, knots)(w), line[-len(w) :])
 
     lengths = arc.lengths(np.array([s for s, _ in joints]))
     camber = _refined(
@@ -86,9 +83,8 @@ def side_knots_for(outline: Outline, tolerance: float) -> Reals:
     """The knots of both sides alone on which they reach the tolerance; raises as `native_curves` does."""
 
     def side_error(knots: Reals, s: Reals) -> Reals:
-        matrix = basis(knots, DEGREE, s)
-        exact = (_single(points) for points in outline.points(s))
-        return np.max([_distance(matrix @ _sides(outline, knots)[i], each) for i, each in enumerate(exact)], axis=0)
+        exact = np.stack([_single(points) for points in outline.points(s)], axis=1)
+        return np.asarray(np.max(_distance(_curve(_sides(outline, knots), knots)(s), exact), axis=1))
 
     return _refined(_initial_knots([(joint.s, joint.derivatives) for joint in outline.joints]), side_error, tolerance)
 
@@ -107,7 +103,7 @@ def interpolated_along_u(lines: Array, start: EdgeDerivatives, end: EdgeDerivati
     outer = np.concatenate([matrix[:, :3], matrix[:, -3:]], axis=1)
     right = lines - (outer @ known.reshape(*known.shape[:-2], -1)).reshape(*known.shape[:-3], *lines.shape[-3:])
     shape = right.shape
-    inner = solved(matrix[:, 3:-3], right.reshape(*shape[:-2], -1)).reshape(shape)
+    inner = banded_solved(matrix[:, 3:-3], right.reshape(*shape[:-2], -1)).reshape(shape)
     return concatenated([known[..., :3, :, :], inner, known[..., 3:, :, :]], axis=-3)
 
 
@@ -119,20 +115,19 @@ def _end_rows(row: EdgeDerivatives, sign: float, near: float, far: float) -> lis
     return [row.point, second, third]
 
 
-def _sides(outline: Outline, knots: Reals) -> list[Array]:
-    """Control points (n, 2) of both sides."""
-    edges = outline.leading_edge, outline.trailing_edge
-    found = []
-    for points, name in zip(outline.points(greville(knots, DEGREE)[3:-3]), ("upper", "lower"), strict=True):
-        starts: list[EdgeDerivatives] = [getattr(edge, name) for edge in edges]
-        first, last = (EdgeDerivatives(*(each.reshape(1, 2) for each in start)) for start in starts)
-        found.append(interpolated_along_u(_single(points)[:, None], first, last, knots)[:, 0])
-    return found
+def _sides(outline: Outline, knots: Reals) -> Array:
+    """Control points (n, 2, 2) of the upper and the lower side."""
+    points = np.stack([_single(side) for side in outline.points(greville(knots, DEGREE)[3:-3])], axis=1)
+    first, last = (
+        EdgeDerivatives(*(np.stack([a.reshape(2), b.reshape(2)]) for a, b in zip(edge.upper, edge.lower, strict=True)))
+        for edge in (outline.leading_edge, outline.trailing_edge)
+    )
+    return interpolated_along_u(points, first, last, knots)
 
 
-def _camber(outline: Outline, knots: Reals, places: Reals) -> Array:
-    """Control points (n, 2) of the camber line through its points at the places s (n,) of the Greville sites."""
-    return solved(basis(knots, DEGREE, greville(knots, DEGREE)), _single(outline.camber(places)))
+def _interpolated(points: Array, knots: Reals) -> Array:
+    """Control points (n, 2) of a line through points (n, 2) at its Greville sites."""
+    return banded_solved(basis(knots, DEGREE, greville(knots, DEGREE)), points)
 
 
 def _initial_knots(joints: list[tuple[float, int]]) -> Reals:
@@ -166,8 +161,12 @@ def _refined(knots: Reals, error: Callable[[Reals, Reals], Reals], tolerance: fl
         pieces = np.ones(len(worst), dtype=int)
         missing = worst > tolerance
         pieces[missing] = np.clip(np.ceil((2.0 * worst[missing] / tolerance) ** (1.0 / (DEGREE + 1))), 2, 4).astype(int)
-        added = [np.linspace(a, b, n + 1)[1:-1] for a, b, n in zip(ends[:-1], ends[1:], pieces, strict=True)]
+        added = [np.linspace(a, b, n + 1)[1:-1] for a, b, n in zip(ends[:-1], ends[1:], pieces, strict=True) if n > 1]
         knots = np.sort(np.concatenate([knots, *added]))
+
+
+def _curve(control_points: Array, knots: Reals) -> Curve:
+    return Curve(control_points=control_points, knots=knots, degree=DEGREE)
 
 
 def _single(points: Array) -> Array:
