@@ -1,6 +1,7 @@
 """Arc length of a plane line that is known by its points only."""
 
 from collections.abc import Callable, Sequence
+from functools import cache
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -33,47 +34,65 @@ class ArcLength:
         """`line` returns points (k, 2) at parameters (k,) within the increasing `ends` of the pieces."""
         self._ends = np.array(ends)
         count = NODES
-        self._speed = self._speeds(line, count)
-        while count < MAX_NODES and np.max(magnitude(self._speed[:, -4:])) > RESOLVED * np.max(magnitude(self._speed)):
+        speed = self._speeds(line, count)
+        while count < MAX_NODES and np.max(magnitude(speed[:, -4:])) > RESOLVED * np.max(magnitude(speed)):
             count *= 2
-            self._speed = self._speeds(line, count)
-        self._risen = np.stack([chebyshev.chebint(each, lbnd=-1) for each in self._speed])
-        total = np.array([chebyshev.chebval(1.0, each) for each in self._risen])
+            speed = self._speeds(line, count)
+        risen = chebyshev.chebint(speed, lbnd=-1, axis=1)
+        total = chebyshev.chebval(1.0, risen.T)
         self._whole = float(np.sum(total))
-        self._start = np.concatenate([[0.0], np.cumsum(total)[:-1]])
+        risen[1:, 0] += np.cumsum(total)[:-1]
+        # coefficients (count + 1, 2, pieces) of the length and of its derivative
+        self._coefficients = np.stack([risen, np.pad(speed, [(0, 0), (0, 1)])]).T.swapaxes(1, 2) / self._whole
+        self._table = np.unique(self._ends[:-1] + np.diff(self._ends) * np.linspace(0.0, 1.0, TABLE + 1)[:, None])
+        self._lengths = self.lengths(self._table)
+        self._places: dict[float, float] = {}
 
     def _speeds(self, line: Callable[[Reals], Reals], count: int) -> Reals:
         """Chebyshev coefficients (pieces, count) of the speed on each piece."""
-        nodes = np.cos(np.pi * (np.arange(count) + 0.5) / count)[::-1]
-        matrix = chebyshev.chebvander(nodes, count - 1).T * (2.0 / count)
-        matrix[0] /= 2.0
+        nodes, transform, slope = _chebyshev(count)
         half = np.diff(self._ends)[:, None] / 2.0
         places = self._ends[:-1, None] + half * (1.0 + nodes)
-        points = line(places.ravel()).reshape(*places.shape, 2)
-        slopes = np.stack([chebyshev.chebval(nodes, chebyshev.chebder(matrix @ each)).T for each in points])
-        return np.stack([matrix @ each for each in length(slopes)])
+        return np.asarray(length(slope @ line(places.ravel()).reshape(*places.shape, 2)) @ transform.T)
 
     def lengths(self, s: Reals) -> Reals:
         """Arc lengths (k,) at parameters s (k,)."""
         return self._values(s)[0]
 
     def places(self, w: Reals) -> Reals:
-        """Parameters (k,) at arc lengths w (k,) in [0, 1]."""
-        table = np.unique(self._ends[:-1] + np.diff(self._ends) * np.linspace(0.0, 1.0, TABLE + 1)[:, None])
-        known = self.lengths(table)
-        cell = np.clip(np.searchsorted(known, w, side="right") - 1, 0, len(table) - 2)
+        """Parameters (k,) at arc lengths w (k,) in [0, 1]; those that were asked for before are remembered."""
+        asked = w.tolist()
+        new = [each for each in asked if each not in self._places]
+        if new:
+            self._places |= zip(new, self._searched(np.array(new)).tolist(), strict=True)
+        return np.array([self._places[each] for each in asked])
+
+    def _searched(self, w: Reals) -> Reals:
+        """Parameters (k,) at arc lengths w (k,)."""
+        table = self._table
+        cell = np.clip(np.searchsorted(self._lengths, w, side="right") - 1, 0, len(table) - 2)
         low, high = table[cell], table[cell + 1]
-        s = np.interp(w, known, table)
+        s = np.interp(w, self._lengths, table)
         for _ in range(STEPS):
             value, slope = self._values(s)
             still = slope == 0.0
             s = np.clip(s - np.where(still, 0.0, value - w) / np.where(still, 1.0, slope), low, high)
         return np.where(w <= 0.0, self._ends[0], np.where(w >= 1.0, self._ends[-1], s))
 
-    def _values(self, s: Reals) -> tuple[Reals, Reals]:
-        piece = np.clip(np.searchsorted(self._ends, s, side="right") - 1, 0, len(self._speed) - 1)
+    def _values(self, s: Reals) -> Reals:
+        """Arc lengths and their derivatives (2, k) at parameters (k,)."""
+        piece = np.clip(np.searchsorted(self._ends, s, side="right") - 1, 0, len(self._ends) - 2)
         half = (self._ends[piece + 1] - self._ends[piece]) / 2.0
-        x = (s - self._ends[piece]) / half - 1.0
-        value = self._start[piece] + chebyshev.chebval(x, self._risen[piece].T, tensor=False)
-        slope = chebyshev.chebval(x, self._speed[piece].T, tensor=False) / half
-        return value / self._whole, slope / self._whole
+        found = chebyshev.chebval((s - self._ends[piece]) / half - 1.0, self._coefficients[..., piece], tensor=False)
+        found[1] /= half
+        return np.asarray(found)
+
+
+@cache
+def _chebyshev(count: int) -> tuple[Reals, Reals, Reals]:
+    """Chebyshev points (count,), and matrices from values there to coefficients and to slopes there."""
+    nodes = np.cos(np.pi * (np.arange(count) + 0.5) / count)[::-1]
+    transform = np.asarray(chebyshev.chebvander(nodes, count - 1).T * (2.0 / count), dtype=np.float64)
+    transform[0] /= 2.0
+    slope: Reals = chebyshev.chebvander(nodes, count - 2) @ chebyshev.chebder(transform)
+    return nodes, transform, slope
