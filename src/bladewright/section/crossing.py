@@ -77,13 +77,10 @@ def _folding(outlines: Reals) -> tuple[int, int] | None:
 
 def self_crossings(outlines: Reals) -> tuple[int, int] | None:
     """Outline and segment of the first of closed outlines (k, n, 2) that crosses itself; None where none does."""
-    count = outlines.shape[1]
-    separated = _separated(outlines, outlines)
-    index = np.arange(count)
-    gap = (index[:, None] - index) % count
-    crossed = separated & np.swapaxes(separated, 1, 2) & (gap > 1) & (gap < count - 1) & _overlapping(outlines)
-    found = np.argwhere(np.any(crossed, axis=2))
-    return (int(found[0, 0]), int(found[0, 1])) if len(found) else None
+    section, own, other = _crossings(outlines, outlines)
+    gap = (own - other) % outlines.shape[1]
+    found = np.flatnonzero((gap > 1) & (gap < outlines.shape[1] - 1))
+    return (int(section[found[0]]), int(own[found[0]])) if len(found) else None
 
 
 def touching(outlines: Reals, pitch: float) -> int | None:
@@ -91,24 +88,30 @@ def touching(outlines: Reals, pitch: float) -> int | None:
     high = np.flatnonzero(np.ptp(outlines[..., 1], axis=1) >= pitch)
     if len(high) == 0:
         return None
-    near, far = outlines[high], outlines[high] + np.array([0.0, pitch])
-    crossed = _separated(near, far) & np.swapaxes(_separated(far, near), 1, 2)
-    found = np.flatnonzero(np.any(crossed, axis=(1, 2)))
+    found = _crossings(outlines[high], outlines[high] + np.array([0.0, pitch]))[0]
     return int(high[found[0]]) if len(found) else None
 
 
-def _overlapping(outlines: Reals) -> NDArray[np.bool_]:
-    """Mask (k, n, n) of segments whose extents overlap; segments of one straight line would cross by rounding alone."""
-    after = np.roll(outlines, -1, axis=1)
-    low, high = np.minimum(outlines, after), np.maximum(outlines, after)
-    overlap = [low[:, :, None, axis] <= high[:, None, :, axis] for axis in (0, 1)]
-    both = overlap[0] & overlap[1]
-    return both & np.swapaxes(both, 1, 2)
+Places = NDArray[np.intp]
 
 
-def _separated(lines: Reals, points: Reals) -> NDArray[np.bool_]:
-    """Mask (k, n, m) of the segments of `points` whose ends the line through each segment of `lines` separates."""
-    along = np.roll(lines, -1, axis=1) - lines
-    turns = along[:, :, :1] * points[:, None, :, 1] - along[:, :, 1:] * points[:, None, :, 0]
-    above = turns > (along[..., 0] * lines[..., 1] - along[..., 1] * lines[..., 0])[:, :, None]
-    return above != np.roll(above, -1, axis=2)
+def _crossings(first: Reals, second: Reals) -> tuple[Places, Places, Places]:
+    """Section and both segments (c,), in order, of the crossings of closed outlines (k, n, 2) with others (k, m, 2).
+
+    Segments whose extents do not overlap are left out: on one straight line they would cross by rounding alone.
+    """
+    after, behind = np.roll(first, -1, axis=1), np.roll(second, -1, axis=1)
+    low, high = np.minimum(first, after)[:, :, None], np.maximum(first, after)[:, :, None]
+    other_low, other_high = np.minimum(second, behind)[:, None], np.maximum(second, behind)[:, None]
+    x, y = ((low[..., axis] <= other_high[..., axis]) & (other_low[..., axis] <= high[..., axis]) for axis in (0, 1))
+    section, i, j = np.nonzero(x & y)
+    own, other = (first[section, i], after[section, i]), (second[section, j], behind[section, j])
+    crossed = _parted(own, other) & _parted(other, own)
+    return section[crossed], i[crossed], j[crossed]
+
+
+def _parted(line: tuple[Reals, Reals], ends: tuple[Reals, Reals]) -> NDArray[np.bool_]:
+    """Whether the line through two points (c, 2) parts two others."""
+    along = line[1] - line[0]
+    heights = [along[:, 0] * point[:, 1] - along[:, 1] * point[:, 0] for point in (line[0], *ends)]
+    return np.asarray((heights[1] > heights[0]) != (heights[2] > heights[0]))
