@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import Literal, TypeVar
 
 import numpy as np
 
@@ -13,13 +13,14 @@ from bladewright.numerics.elementary import Array, concatenated
 from bladewright.nurbs.basis import Reals
 from bladewright.section.offset import merged_joints
 from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
-from bladewright.section.power_series import Series, point_derivatives, polynomial, variable
+from bladewright.section.power_series import Series, point_derivatives, polynomial, polynomial_points, variable
 from bladewright.section.segmented.segment import DEGREE, powers
 from bladewright.section.segmented.skin import Band
 
 CUTS = (0.4, 0.7)
 """s of the front and the rear cut: the leading edge's share is larger than its length's, for its curvature [-]"""
 ENDS = (0.0, *CUTS, 1.0)
+Parameter = TypeVar("Parameter", Array, Series)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -99,11 +100,11 @@ class SegmentedOutline(Outline):
 
     @cached_property
     def leading_edge(self) -> Edge:
-        return self._edge(0.0, "round" if self.nose == 2 else "sharp")
+        return self._edge(0, "round" if self.nose == 2 else "sharp")
 
     @cached_property
     def trailing_edge(self) -> Edge:
-        return self._edge(1.0, "blunt" if self.blunt else "sharp")
+        return self._edge(1, "blunt" if self.blunt else "sharp")
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
@@ -126,10 +127,11 @@ class SegmentedOutline(Outline):
             band.check(self.old_sides[band.side].controls, new, where)
 
     def points(self, s: Reals) -> tuple[Array, Array]:
-        upper, lower = (
-            np.stack(np.broadcast_arrays(*(each.value for each in self._series(k, s, 0))), axis=-1) for k in (0, 1)
-        )
-        return upper, lower
+        found = []
+        for side in (0, 1):
+            coefficients, t = self._placed(side, s, s)
+            found.append(polynomial_points(coefficients, t[..., None])[..., 0, :])
+        return found[0], found[1]
 
     @property
     def has_exact_derivatives(self) -> bool:
@@ -137,16 +139,24 @@ class SegmentedOutline(Outline):
 
     def derivatives(self, s: Reals, order: int) -> tuple[Array, Array]:
         """Points and derivatives by s (..., m, k, 2, order + 1) of both sides, exact; at a joint those behind it."""
-        upper, lower = (point_derivatives(*self._series(k, s, order)) for k in (0, 1))
-        return upper, lower
+        found = []
+        for side in (0, 1):
+            coefficients, t = self._placed(side, s, variable(s, order))
+            x, y = (polynomial([coefficients[..., power, axis] for power in range(DEGREE + 1)], t) for axis in (0, 1))
+            found.append(point_derivatives(x, y))
+        return found[0], found[1]
 
     def camber(self, s: Reals) -> Array:
         """The middle between the sides at equal s."""
         upper, lower = self.points(s)
         return 0.5 * (upper + lower)
 
-    def _edge(self, s: float, kind: Literal["round", "sharp", "blunt"]) -> Edge:
-        upper, lower = (EdgeDerivatives.of_side(side) for side in self.derivatives(np.array([s]), 2))
+    @cached_property
+    def _at_edges(self) -> tuple[Array, Array]:
+        return self.derivatives(np.array([0.0, 1.0]), 2)
+
+    def _edge(self, end: int, kind: Literal["round", "sharp", "blunt"]) -> Edge:
+        upper, lower = (EdgeDerivatives.of_side(side[..., end : end + 1, :, :]) for side in self._at_edges)
         return Edge(kind=kind, upper=upper, lower=lower)
 
     @cached_property
@@ -169,17 +179,13 @@ class SegmentedOutline(Outline):
             found.append((_row(first), _row(last)))
         return found
 
-    def _series(self, side: int, s: Reals, order: int) -> tuple[Series, Series]:
-        """Coordinates of a side as series of s."""
+    def _placed(self, side: int, s: Reals, at: Parameter) -> tuple[Array, Parameter]:
+        """Coefficients (..., m, k, 4, 2) of a side's spans at s (k,), and their parameter; of s or its series."""
         own = self.sides[side]
         span = np.clip(np.searchsorted(own.starts, s, side="right") - 1, 0, len(own.starts) - 1)
         widths = np.diff(np.append(own.starts, 1.0))
-        share = (variable(s, order) - own.starts[span]) / widths[span]
         first, last = (each[..., span] for each in self._slopes[side])
-        t = _eased(share, first, last)
-        coefficients = own.powers[..., span, :, :]
-        x, y = (polynomial([coefficients[..., k, axis] for k in range(DEGREE + 1)], t) for axis in (0, 1))
-        return x, y
+        return own.powers[..., span, :, :], _eased((at - own.starts[span]) / widths[span], first, last)
 
 
 def _shared(own: Array, other: Array) -> Array:
@@ -191,7 +197,7 @@ def _row(columns: Sequence[Array]) -> Array:
     return np.stack(np.broadcast_arrays(*columns), axis=-1)
 
 
-def _eased(share: Series, first: Array, last: Array) -> Series:
+def _eased(share: Parameter, first: Array, last: Array) -> Parameter:
     """The quintic polynomial from 0 to 1 with these slopes and no second derivative at its ends."""
     # by Hermite's basis: the slopes' parts above 1 have no value at the ends
     cube = share * share * share
