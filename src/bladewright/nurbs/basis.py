@@ -38,11 +38,15 @@ def greville(knots: Reals, degree: int) -> Reals:
 
     At ends of full multiplicity they are the ends, to the bit.
     """
-    windows = np.lib.stride_tricks.sliding_window_view(knots[1:-1], degree)
-    found = windows.mean(axis=-1)
+    count = len(knots) - degree - 1
+    found = np.zeros(count)
+    for first in range(1, degree + 1):
+        found += knots[first : first + count]
+    found /= degree
     # the mean of equal numbers may be another one by rounding
-    found[[0, -1]] = np.clip(found[[0, -1]], windows[[0, -1], 0], windows[[0, -1], -1])
-    return np.asarray(found)
+    for end, few in ((0, knots[1 : degree + 1]), (-1, knots[-degree - 1 : -1])):
+        found[end] = min(max(found[end], few[0]), few[-1])
+    return found
 
 
 def breaks(knots: Reals) -> Reals:
