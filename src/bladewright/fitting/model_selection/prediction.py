@@ -175,6 +175,9 @@ class LinearModel:
                     smaller = (*counts[:place], fewer, *counts[place + 1 :])
                     embedding = law.embedding(structure, smaller)
                     lost = np.linalg.qr(embedding, mode="complete")[0][:, embedding.shape[1] :].T
+                    if not len(lost):
+                        # a row that is left out has no laws along the span to lose control points
+                        continue
                     bent, spread = lost @ values, lost[:, free] @ prediction.inverse[own, own] @ lost[:, free].T
                     loss = float(bent @ np.linalg.lstsq(spread, bent, rcond=None)[0])
                     found.append((loss / len(lost), len(lost), i, smaller))

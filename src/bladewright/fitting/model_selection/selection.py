@@ -205,9 +205,10 @@ class _Selection:
 
         It is the one before where a richer one has no shape, or comes hardly nearer.
         """
-        found, structure = match, rich_structure(match.design, len(self.task.points))
+        found, widened = match, rich_structure
         while found is match or (found.maximum > near and has_systematic_misfit(found)):
             try:
+                structure = widened(found.design, len(self.task.points))
                 design = with_feasible_edges(reshaped(found.design, structure))
                 richer = searched(
                     self.task, design, noise=found.rms, rounds=QUICK_ROUNDS + 1, min_reduction=ROUGH_REDUCTION
@@ -216,7 +217,7 @@ class _Selection:
                 break
             if found is not match and richer.rms > RICHER_GAIN * found.rms:
                 break
-            found, structure = richer, wider_structure(richer.design, len(self.task.points))
+            found, widened = richer, wider_structure
         return found
 
     def of_size(self, rich: Match, most: int) -> Match:
