@@ -61,13 +61,15 @@ def matched_blade(
     own = start is None and like is None
     if own and isinstance(task.free, FreeParameters):
         task = replace(task, free=replace(task.free, walls=True))
-    first = start
+    designs = [start]
     if start is None or like is not None:
         closed = _closed_blade(task, header, like) if start is None else start.build()
         task.progress("first design of the family")
-        first = _first(task, closed, kind, like, header)
-    first = task.free.applied(first) if isinstance(task.free, FreeParameters) else first
-    check_bounds(first, task.free(first), task.bounds)
+        designs = _first(task, closed, kind, like, header)
+    designs = [task.free.applied(each) if isinstance(task.free, FreeParameters) else each for each in designs]
+    for design in designs:
+        check_bounds(design, task.free(design), task.bounds)
+    first: Any = compared(task.thinned(QUICK_POINTS), iter(designs))[0].design if len(designs) > 1 else designs[0]
     structure = None if like is None else structure_of(like)
     found, reason = selected_match(task, first, target, like=structure, guessed=first is not start)
     return found, "; ".join(filter(None, (reason, "" if own else WALLS_HELD_NOTE)))
@@ -105,8 +107,8 @@ def _band(task: Task, closed: Blade, v: float) -> Reals:
     return np.concatenate(found)
 
 
-def _first(task: Task, closed: Blade, kind: FitFamily, like: Any, header: DesignHeader) -> Design:
-    """The blade of the family whose sections are those of a closed blade."""
+def _first(task: Task, closed: Blade, kind: FitFamily, like: Any, header: DesignHeader) -> list[Design]:
+    """Blades of the family whose sections are those of a closed blade, or without `like` that in its middle, too."""
     design = closed.design
     metre = UNITS[header.length_unit]
     shapes = [section_shape(closed.section(float(v))) for v in START_SPANS]
@@ -125,6 +127,10 @@ def _first(task: Task, closed: Blade, kind: FitFamily, like: Any, header: Design
         _parts_along_span(kind, shapes[MIDDLE::-1], chosen)[::-1] + _parts_along_span(kind, shapes[MIDDLE:], chosen)[1:]
     )
     counts = dict.fromkeys(counts_of(chosen), LAW_COUNT) if like is None else counts_of(like.section)
+    sections = [_laws(parts, counts)]
+    if like is None:
+        # numbers of a section that make up for each other run wild along the span where nothing holds them
+        sections.append(_laws([chosen] * len(parts), dict.fromkeys(counts, 1)))
     linear = design.arrangement == "linear"
     place = [float(each.start[1]) / metre if linear else float(np.degrees(each.start[1])) for each in shapes]
     fields: dict[str, Any] = {
@@ -133,17 +139,16 @@ def _first(task: Task, closed: Blade, kind: FitFamily, like: Any, header: Design
         "arrangement": design.arrangement,
         "blade_count": design.blade_count,
         "pitch": None if design.pitch is None else design.pitch * UNITS[design.length_unit] / metre,
-        "section": _laws(parts, counts),
     }
     name = "leading_edge_y" if linear else "leading_edge_theta"
     given = LAW_COUNT if like is None else len(law_points(getattr(like, name)))
     fields[name] = nearest_law(place, START_SPANS, given)
     if like is None:
         fields |= {edge: found.edge(edge, metre) for edge in EDGES}
-        return kind.blade(**fields, flow_path=found.flow_path(metre))
+        fields["flow_path"] = found.flow_path(metre)
+        return [kind.blade(**fields, section=part) for part in sections]
     fields |= {edge: found.edge_like(edge, getattr(like, edge), metre) for edge in EDGES}
-    changed: Design = with_stations_of(replace(like, **fields), like)
-    return changed
+    return [with_stations_of(replace(like, **fields, section=sections[0]), like)]
 
 
 def _backwards(found: ChannelCurves, kind: FitFamily, like: Any, section: SectionShape) -> bool:

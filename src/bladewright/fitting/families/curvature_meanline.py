@@ -19,8 +19,11 @@ _ROUND: dict[str, Any] = {**_BODY, "leading_edge_thickness": 0.02, "trailing_edg
 TEMPLATES = tuple(
     CurvatureMeanline(metal_angle_in=0.0, metal_angle_out=0.0, curvature=(1.0,) * 4, thickness=law)
     for law in (
-        Wennerstrom(**_ROUND),
-        Wennerstrom(**_ROUND, trailing_edge="blunt"),
+        # the end that is straight is held: where it changes, edges of different thickness make the shape jump
+        Wennerstrom(**_ROUND, straight_end="leading"),
+        Wennerstrom(**_ROUND, straight_end="trailing"),
+        Wennerstrom(**_ROUND, straight_end="leading", trailing_edge="blunt"),
+        Wennerstrom(**_ROUND, straight_end="trailing", trailing_edge="blunt"),
         ModifiedNaca(**_BODY, trailing_edge_thickness=0.02, trailing_edge_slope=-0.1),
         QuarticSpline(**_ROUND),
         QuarticSpline(**_ROUND, trailing_edge="sharp"),
