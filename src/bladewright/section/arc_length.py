@@ -42,10 +42,13 @@ class ArcLength:
         total = chebyshev.chebval(1.0, risen.T)
         self._whole = float(np.sum(total))
         risen[1:, 0] += np.cumsum(total)[:-1]
-        # coefficients (count + 1, 2, pieces) of the length and of its derivative
-        self._coefficients = np.stack([risen, np.pad(speed, [(0, 0), (0, 1)])]).T.swapaxes(1, 2) / self._whole
-        self._table = np.unique(self._ends[:-1] + np.diff(self._ends) * np.linspace(0.0, 1.0, TABLE + 1)[:, None])
-        self._lengths = self.lengths(self._table)
+        # coefficients (pieces, 2, count + 1) of the length and of its derivative
+        self._coefficients = np.stack([risen, np.pad(speed, [(0, 0), (0, 1)])], axis=1) / self._whole
+        shares = np.linspace(0.0, 1.0, TABLE, endpoint=False)
+        table = self._ends[:-1, None] + np.diff(self._ends)[:, None] * shares
+        self._table = np.append(table, self._ends[-1])
+        lengths = self._coefficients[:, 0] @ _polynomials(2.0 * shares - 1.0, count)
+        self._lengths = np.append(lengths, 1.0)
         self._places: dict[float, float] = {}
 
     def _speeds(self, line: Callable[[Reals], Reals], count: int) -> Reals:
@@ -79,13 +82,13 @@ class ArcLength:
             s = np.clip(s - np.where(still, 0.0, value - w) / np.where(still, 1.0, slope), low, high)
         return np.where(w <= 0.0, self._ends[0], np.where(w >= 1.0, self._ends[-1], s))
 
-    def _values(self, s: Reals) -> Reals:
-        """Arc lengths and their derivatives (2, k) at parameters (k,)."""
+    def _values(self, s: Reals) -> tuple[Reals, Reals]:
+        """Arc lengths and their derivatives (k,) at parameters (k,)."""
         piece = np.clip(np.searchsorted(self._ends, s, side="right") - 1, 0, len(self._ends) - 2)
         half = (self._ends[piece + 1] - self._ends[piece]) / 2.0
-        found = chebyshev.chebval((s - self._ends[piece]) / half - 1.0, self._coefficients[..., piece], tensor=False)
-        found[1] /= half
-        return np.asarray(found)
+        values = _polynomials((s - self._ends[piece]) / half - 1.0, self._coefficients.shape[-1] - 1)
+        value, slope = np.einsum("kcn,nk->ck", self._coefficients[piece], values)
+        return value, slope / half
 
 
 @cache
@@ -96,3 +99,8 @@ def _chebyshev(count: int) -> tuple[Reals, Reals, Reals]:
     transform[0] /= 2.0
     slope: Reals = chebyshev.chebvander(nodes, count - 2) @ chebyshev.chebder(transform)
     return nodes, transform, slope
+
+
+def _polynomials(x: Reals, degree: int) -> Reals:
+    """Chebyshev polynomials (degree + 1, k) at places (k,) in [-1, 1]."""
+    return np.cos(np.multiply.outer(np.arange(degree + 1.0), np.arccos(np.clip(x, -1.0, 1.0))))

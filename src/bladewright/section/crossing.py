@@ -101,10 +101,12 @@ def _crossings(first: Reals, second: Reals) -> tuple[Places, Places, Places]:
     Segments whose extents do not overlap are left out: on one straight line they would cross by rounding alone.
     """
     after, behind = np.roll(first, -1, axis=1), np.roll(second, -1, axis=1)
-    low, high = np.minimum(first, after)[:, :, None], np.maximum(first, after)[:, :, None]
-    other_low, other_high = np.minimum(second, behind)[:, None], np.maximum(second, behind)[:, None]
-    x, y = ((low[..., axis] <= other_high[..., axis]) & (other_low[..., axis] <= high[..., axis]) for axis in (0, 1))
-    section, i, j = np.nonzero(x & y)
+    low, high = np.minimum(first, after), np.maximum(first, after)
+    other_low, other_high = np.minimum(second, behind), np.maximum(second, behind)
+    x = (low[:, :, None, 0] <= other_high[:, None, :, 0]) & (other_low[:, None, :, 0] <= high[:, :, None, 0])
+    section, i, j = np.nonzero(x)
+    y = (low[section, i, 1] <= other_high[section, j, 1]) & (other_low[section, j, 1] <= high[section, i, 1])
+    section, i, j = section[y], i[y], j[y]
     own, other = (first[section, i], after[section, i]), (second[section, j], behind[section, j])
     crossed = _parted(own, other) & _parted(other, own)
     return section[crossed], i[crossed], j[crossed]
