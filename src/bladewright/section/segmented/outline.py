@@ -15,7 +15,7 @@ from bladewright.section.offset import merged_joints
 from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
 from bladewright.section.power_series import Series, point_derivatives, polynomial, polynomial_points, variable
 from bladewright.section.segmented.segment import DEGREE, powers
-from bladewright.section.segmented.skin import Band
+from bladewright.section.segmented.skin import Band, check_bands
 
 CUTS = (0.4, 0.7)
 """s of the front and the rear cut: the leading edge's share is larger than its length's, for its curvature [-]"""
@@ -120,11 +120,10 @@ class SegmentedOutline(Outline):
         return f"{turned}bring the inner control points and the scale factors of that segment nearer to its joints"
 
     def check_limits(self, where: Sequence[str]) -> None:
-        if self.old_sides is None:
-            return
-        for band in self.bands:
-            new = self.sides[band.side].controls[band.segment]
-            band.check(self.old_sides[band.side].controls, new, where)
+        for k, (old, new) in enumerate(zip(self.old_sides or self.sides, self.sides, strict=True)):
+            bands = [band for band in self.bands if band.side == k]
+            if bands:
+                check_bands(bands, new.counts, old.powers, new.powers, where)
 
     def points(self, s: Reals) -> tuple[Array, Array]:
         found = []

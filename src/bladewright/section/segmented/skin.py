@@ -9,7 +9,6 @@ from scipy.spatial import cKDTree
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, cross2, dot, length, turned_left
 from bladewright.nurbs.basis import Reals
-from bladewright.section.segmented.segment import powers
 
 SAMPLES = 100
 """places in a knot span at which a skin is compared with its band: between them its distance is taken by a parabola,
@@ -32,25 +31,34 @@ class Band:
     outer: Array
     """(..., m) how far outside it"""
 
-    def check(self, old: Sequence[Array], new: Array, where: Sequence[str]) -> None:
-        """Refuse new control points (..., m, n, 2) whose curve leaves the band of the side's old ones.
+    def check(self, off: Reals, i: int, place: str) -> None:
+        """Refuse distances (k,) of the morphed segment from the old side, positive on its left, beyond the band's.
 
-        `old` are the control points of the side's three segments, `where` (m,) names the sections.
+        `i` is the number of the section, which `place` names.
         """
-        outward = 1.0 if self.side == 0 else -1.0
+        outward = off if self.side == 0 else -off
         name = f"{SIDES[self.side]}.{SEGMENTS[self.segment]}.skin"
-        before, after = [_sections(each, 3) for each in old], _sections(new, 3)
-        inner, outer = _sections(self.inner, 1), _sections(self.outer, 1)
-        for i, place in enumerate(where):
-            off = outward * _distances([_one(each, i) for each in before], _one(after, i))
-            found = ("outer", "outside", _largest(off), outer), ("inner", "inside", _largest(-off), inner)
-            for field, word, value, limits in found:
-                limit = float(_one(limits, i))
-                if value > limit + SLACK:
-                    raise DesignError(
-                        f"{name}.{field} is {limit:g}: the morphed skin{place} lies {value:.4g} chords {word} the old "
-                        f"one: take smaller changes of control points and scale factors, or a larger {field}"
-                    )
+        found = (("outer", "outside", outward, self.outer), ("inner", "inside", -outward, self.inner))
+        for field, word, distances, limits in found:
+            value, limit = _largest(distances), float(_one(_sections(limits, 1), i))
+            if value > limit + SLACK:
+                raise DesignError(
+                    f"{name}.{field} is {limit:g}: the morphed skin{place} lies {value:.4g} chords {word} the old "
+                    f"one: take smaller changes of control points and scale factors, or a larger {field}"
+                )
+
+
+def check_bands(bands: Sequence[Band], counts: Sequence[int], old: Array, new: Array, where: Sequence[str]) -> None:
+    """Refuse a side that leaves its bands about the old one; `where` (m,) names the sections.
+
+    Both are given by coefficients (..., m, p, 4, 2) of their spans, of which each segment has one of `counts`.
+    """
+    before, after = _sections(old, 4), _sections(new, 4)
+    for i, place in enumerate(where):
+        off = _distances(_one(before, i), _one(after, i)).reshape(sum(counts), -1)
+        segments = np.split(off, np.cumsum(counts)[:-1])
+        for band in bands:
+            band.check(segments[band.segment].ravel(), i, place)
 
 
 def _sections(values: Array, rank: int) -> Reals:
@@ -64,9 +72,9 @@ def _one(values: Reals, i: int) -> Reals:
     return np.asarray(values[min(i, len(values) - 1)])
 
 
-def _distances(old: Sequence[Reals], new: Reals) -> Reals:
-    """Distances (k,) of a segment's curve from a side of three, positive on its left."""
-    point, first, second = (np.concatenate(each) for each in zip(*map(_along, old), strict=True))
+def _distances(old: Reals, new: Reals) -> Reals:
+    """Distances (k,) of one side from another, positive on its left, both by coefficients (p, 4, 2) of their spans."""
+    point, first, second = _along(old)
     tangent = first / length(first)[:, None]
     bend = cross2(first, second) / length(first) ** 3
     points = _along(new)[0]
@@ -77,9 +85,9 @@ def _distances(old: Sequence[Reals], new: Reals) -> Reals:
     return np.asarray(across - 0.5 * bend * aside**2 / (1.0 - bend * across))
 
 
-def _along(controls: Reals) -> tuple[Reals, Reals, Reals]:
-    """Points and two derivatives (k, 2) along the spans of a segment with control points (n, 2)."""
-    c = powers(controls)[:, None]
+def _along(coefficients: Reals) -> tuple[Reals, Reals, Reals]:
+    """Points and two derivatives (k, 2) along spans with coefficients (p, 4, 2)."""
+    c = coefficients[:, None]
     t = np.linspace(0.0, 1.0, SAMPLES + 1)[:, None]
     found = (
         c[..., 0, :] + t * (c[..., 1, :] + t * (c[..., 2, :] + t * c[..., 3, :])),
