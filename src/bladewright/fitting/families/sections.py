@@ -5,6 +5,8 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from scipy.spatial import cKDTree
+from scipy.special import chdtri
 
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
@@ -16,7 +18,7 @@ from bladewright.fitting.initial_guess.section import first_section
 from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
 from bladewright.fitting.model_selection.match_target import MatchTarget
-from bladewright.fitting.model_selection.selection import LARGEST_OPEN, NEAR, has_systematic_misfit, selected_match
+from bladewright.fitting.model_selection.selection import LARGEST_OPEN, NEAR, determined, has_systematic_misfit, selected_match
 from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.fitting.models.planar import SINGLE_SECTION
 from bladewright.section.checks import UNITS
@@ -35,6 +37,9 @@ OUTLINE_DEVIATION = 1e-4
 what acceptance trusts"""
 OUTLINE_POINTS = 1000
 """points by which contours are searched"""
+BESIDE, BY_CHANCE = 16, 1e-3
+"""points beside each other by which a misfit is told that stays with an edge, which seldom has more, and probability
+that noise alone looks like one (`BY_CHANCE`) [-]"""
 OUTLINE_SURPLUS = 2
 """by how many the points of a contour are fewer than its parameters: one coordinate is free of each point but two, and
 four numbers place the section"""
@@ -69,9 +74,9 @@ def matched_section(
     promising = [each.design for each in tried[:CONSIDERED] if each.rms < PROMISING * tried[0].rms]
     found, reason = nearest(task, promising, target, structure)
     if kind.through_points is not None and like is None and _is_far(found, target):
-        outline = _through_points(task, kind, tried, header, target)
+        outline, note = _through_points(task, kind, tried, header, target, found)
         if outline is not None and criterion(outline, target) < criterion(found, target):
-            found, reason = outline, ""
+            found, reason = outline, note
     return buildable_tolerance(found), reason
 
 
@@ -95,47 +100,66 @@ def nearest(task: Task, designs: Sequence[Design], target: MatchTarget, like: An
     return min(found, key=lambda each: criterion(each[0], target))
 
 
-def criterion(match: Match, target: MatchTarget) -> float:
+def criterion(match: Match, target: MatchTarget) -> tuple[bool, float]:
     """What the best of several matches has least of: parameters where a tolerance is kept, else Schwarz's criterion.
 
-    Reference: Schwarz 1978, Estimating the dimension of a model.
+    A match that has no misfit beyond the noise anywhere comes before one that has: few points show an edge. Reference:
+    Schwarz 1978, Estimating the dimension of a model.
     """
     count, points = len(match.problem.paths), np.count_nonzero(match.rows)
     if target.tolerance is not None and match.maximum <= target.tolerance:
-        return float(count) - 1.0 / EXACT**2
+        return False, float(count) - 1.0 / EXACT**2
     if target.parameters is not None and count > target.parameters:
-        return np.inf
-    return float(points * np.log(max(match.rms, EXACT) ** 2) + count * np.log(points))
+        return True, np.inf
+    return _has_misfit(match), float(points * np.log(max(match.rms, EXACT) ** 2) + count * np.log(points))
+
+
+def _worst_neighbourhood(match: Match) -> float:
+    """The largest mean square distance of points beside each other [m^2]."""
+    feet = match.state.footpoints.part(match.rows)
+    beside = cKDTree(feet.points).query(feet.points, k=min(BESIDE, len(feet.u)))[1]
+    return float(np.max(np.mean(feet.distances[beside] ** 2, axis=-1)))
+
+
+def _has_misfit(match: Match) -> bool:
+    """Whether points lie further off than their noise, as a whole or anywhere beside each other.
+
+    The squares of so many points beside each other have a chi-squared distribution where they are noise.
+    """
+    allowed = chdtri(BESIDE, BY_CHANCE / np.count_nonzero(match.rows)) / BESIDE
+    return has_systematic_misfit(match) or _worst_neighbourhood(match) > allowed * match.noise_estimate.noise**2
 
 
 def _is_far(match: Match, target: MatchTarget, open_limit: float = LARGEST_OPEN[0]) -> bool:
     """Whether a match is not what is asked for; `open_limit` is the largest distance where nothing is, of the chord."""
     limit = open_limit * match.model.chord if target.tolerance is None else target.tolerance
     short = target.parameters is not None and len(match.problem.paths) < target.parameters
-    return has_systematic_misfit(match) and (short or (target.parameters is None and match.maximum > limit))
+    return (short or (target.parameters is None and match.maximum > limit)) and _has_misfit(match)
 
 
 def _through_points(
-    task: Task, kind: FitFamily, tried: Sequence[Match], header: DesignHeader, target: MatchTarget
-) -> Match | None:
-    """The match by a contour through points, by as few as are asked for; None where there is none.
+    task: Task, kind: FitFamily, tried: Sequence[Match], header: DesignHeader, target: MatchTarget, profile: Match
+) -> tuple[Match | None, str]:
+    """The match by a contour through points, by as few as are asked for, and a note of it; None where there is none.
 
-    The contours begin as the nearest profiles of each kind of trailing edge: that is chosen by the largest distance, as
-    few points show an edge.
+    The contours begin as the nearest profiles of each kind of trailing edge: that is chosen by the worst neighbourhood,
+    as few points show an edge. Outliers are those of the nearest profile: a contour that has not found an edge yet
+    would leave its points out.
     """
-    some, found = task.thinned(OUTLINE_POINTS), None
+    inliers = task.thinned(len(profile.rows)).part(np.flatnonzero(profile.rows))
+    some, found = replace(inliers.thinned(OUTLINE_POINTS), allow_outliers=False), None
     starts = {_trailing_edge(each.design): each for each in reversed(tried)}
     for count in OUTLINE_COUNTS if target.parameters is None else (target.parameters - OUTLINE_SURPLUS,):
         fresh = {edge: _outlined(some, kind, each, count, header) for edge, each in starts.items()}
-        best = min(filter(None, fresh.values()), key=lambda each: each.maximum, default=None)
+        best = min(filter(None, fresh.values()), key=_worst_neighbourhood, default=None)
         if best is None:
             continue
         # a round edge may need more points to be none of several corners
         starts = {edge: starts[edge] if each is None else each for edge, each in fresh.items() if each in (None, best)}
-        found = best if found is None or best.maximum < found.maximum else found
+        found = best if found is None or _worst_neighbourhood(best) < _worst_neighbourhood(found) else found
         if not _is_far(found, target, OUTLINE_DEVIATION):
             break
-    return found
+    return (None, "") if found is None else determined(some, found)
 
 
 def _outlined(task: Task, kind: FitFamily, start: Match, count: int, header: DesignHeader) -> Match | None:

@@ -102,7 +102,7 @@ def selected_match(
     if target.tolerance is not None:
         confirmed = len(many.points) == len(several.points)
         return (found if confirmed else _confirmed(many, found, target.tolerance)), reason
-    return _determined(many, found) if target.open else (_searched_further(many, found), reason)
+    return determined(many, found) if target.open else (_searched_further(many, found), reason)
 
 
 def _searched_further(task: Task, match: Match) -> Match:
@@ -115,7 +115,7 @@ def _searched_further(task: Task, match: Match) -> Match:
     return match if lost else found
 
 
-def _determined(task: Task, match: Match) -> tuple[Match, str]:
+def determined(task: Task, match: Match) -> tuple[Match, str]:
     """A match searched on, with the parameters held that the points do not determine, and a note of them."""
     held: list[str] = []
     for number in range(MOST_HOLDINGS):
