@@ -18,7 +18,13 @@ from bladewright.fitting.initial_guess.section import first_section
 from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
 from bladewright.fitting.model_selection.match_target import MatchTarget
-from bladewright.fitting.model_selection.selection import LARGEST_OPEN, NEAR, determined, has_systematic_misfit, selected_match
+from bladewright.fitting.model_selection.selection import (
+    LARGEST_OPEN,
+    NEAR,
+    determined,
+    has_systematic_misfit,
+    selected_match,
+)
 from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.fitting.models.planar import SINGLE_SECTION
 from bladewright.section.checks import UNITS
