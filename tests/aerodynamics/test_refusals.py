@@ -1,6 +1,7 @@
 """What cannot be a polar ends in a paragraph: wrong numbers, and programs that are missing, hang, or are no XFOIL."""
 
 import re
+import shutil
 import sys
 import time
 
@@ -63,6 +64,22 @@ def test_a_program_that_hangs_or_is_no_xfoil_is_told(section, script, message, t
     with pytest.raises(PolarError, match=re.escape(message)):
         bw.polar(section, 1e6, 4.0, time_limit=0.3)
     assert time.monotonic() - start < 10.0
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="the program here is a shell script")
+@pytest.mark.usefixtures("xfoil")
+def test_an_angle_at_which_xfoil_hangs_is_told_and_the_others_are_done(section, tmp_path, monkeypatch):
+    program = tmp_path / "solver"
+    program.write_text(
+        f'#!/bin/sh\ncat > typed\ngrep -q "ALFA 7" typed && sleep 60\nexec {shutil.which("xfoil")} < typed\n'
+    )
+    program.chmod(0o755)
+    monkeypatch.setenv("BLADEWRIGHT_XFOIL", str(program))
+    monkeypatch.setattr("bladewright.aerodynamics.xfoil.PER_ANGLE", 0.1)
+    monkeypatch.setattr("bladewright.aerodynamics.xfoil.HANGING", 0.005)
+    polar = bw.polar(section, 1e6, [4.0, 7.0, 2.0])
+    assert polar.converged.tolist() == [True, False, True]
+    assert polar.failures == ("alpha 7: XFOIL hung, and was stopped after 0.6 s",)
 
 
 def test_no_xfoil_and_a_wrong_name_for_it(section, monkeypatch, tmp_path):

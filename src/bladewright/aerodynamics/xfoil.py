@@ -23,6 +23,9 @@ VARIABLE = "BLADEWRIGHT_XFOIL"
 FINER = 1.25
 """panels of the second attempt, over those of the first: where a common airfoil does not converge with 160 it mostly
 does with 200, while more iterations or steps from other angles seldom help (design/polar_solvers.py)"""
+HANGING, PER_ANGLE = 0.05, 0.5
+"""[s] Time for each of the iterations that an angle may take, and for each angle, after which XFOIL hangs: alone on a
+processor it needs 0.0025 for an iteration with 160 panels and 0.01 with 400, and 0.04 for an angle that converges"""
 SAME = 1e-6
 """deg within which an angle of the output is the one that was asked for"""
 TRAPPED = (-signal.SIGFPE, 128 + signal.SIGFPE)
@@ -47,23 +50,41 @@ def xfoil_points(
     """
     program = _program()
     end = monotonic() + conditions.time_limit
-    version, found, ending = _run(program, airfoil, angles, conditions, end)
-    if ending and not found:
-        raise PolarError(f"{airfoil.name}: no angle was done: {ending}")
-    failed = [angle for angle in angles if _at(angle, found) is None]
+    version, found, stops = _done(program, airfoil, angles, conditions, end)
+    if stops and not found:
+        raise PolarError(f"{airfoil.name}: no angle was done: {next(iter(stops.values()))}")
+    failed = [angle for angle in angles if angle not in stops and _at(angle, found) is None]
     finer = replace(conditions, panels=min(round(FINER * conditions.panels), PANELS[1]))
     remarks = []
-    if failed and not ending:
-        _, more, ending = _run(program, airfoil, failed, finer, end)
-        found = [*found, *more]
+    if failed:
+        _, more, later = _done(program, airfoil, failed, finer, end)
+        found, stops = [*found, *more], {**stops, **later}
         if more:
             solved = ", ".join(f"{point.alpha:g}" for point in more)
             remarks = [f"alpha {solved}: with {finer.panels} panels, as XFOIL did not converge with fewer"]
     points = [_at(angle, found) for angle in angles]
     tried = f"{conditions.panels} or {finer.panels} panels"
-    why = ending or f"XFOIL did not converge in {conditions.iterations} iterations, with {tried}"
-    failures = [f"alpha {angle:g}: {why}" for angle, point in zip(angles, points, strict=True) if point is None]
-    return f"XFOIL {version}", points, failures, remarks
+    why = f"XFOIL did not converge in {conditions.iterations} iterations, with {tried}"
+    missing = [angle for angle, point in zip(angles, points, strict=True) if point is None]
+    return f"XFOIL {version}", points, [f"alpha {angle:g}: {stops.get(angle, why)}" for angle in missing], remarks
+
+
+def _done(
+    program: str, airfoil: Airfoil, angles: Sequence[float], conditions: Conditions, end: float
+) -> tuple[str, list[ConvergedPoint], dict[float, str]]:
+    """XFOIL's version, the points that converged, and why angles were not tried to their end.
+
+    Where it hangs at one of several angles, those that are missing are done one by one.
+    """
+    version, found, ending, hangs = _run(program, airfoil, angles, conditions, end)
+    missing = [angle for angle in angles if _at(angle, found) is None] if ending else []
+    if not hangs or len(angles) == 1:
+        return version, found, dict.fromkeys(missing, ending)
+    stops: dict[float, str] = {}
+    for angle in missing:
+        own, more, stop = _done(program, airfoil, [angle], conditions, end)
+        version, found, stops = own or version, [*found, *more], {**stops, **stop}
+    return version, found, stops
 
 
 def _at(angle: float, points: Sequence[ConvergedPoint]) -> ConvergedPoint | None:
@@ -81,31 +102,35 @@ def _program() -> str:
 
 def _run(
     program: str, airfoil: Airfoil, angles: Sequence[float], conditions: Conditions, end: float
-) -> tuple[str, list[ConvergedPoint], str]:
-    """XFOIL's version, the points that converged, and why it ended early; empty where it did not.
+) -> tuple[str, list[ConvergedPoint], str, bool]:
+    """XFOIL's version, the points that converged, why it ended early, empty where it did not, and whether it hung.
 
     Where the program stops at a floating-point trap, the library against it is built, and it is started again.
     """
+    patience = HANGING * conditions.iterations + PER_ANGLE * len(angles)
+    hung = monotonic() + patience
     with tempfile.TemporaryDirectory(prefix="bladewright-", ignore_cleanup_errors=True) as name:
         folder = Path(name)
         coordinates = (f"{x:.12f} {y:.12f}" for x, y in airfoil.points)
         (folder / "airfoil.dat").write_text("\n".join(["airfoil", *coordinates, ""]))
         (folder / "script.txt").write_text(_script(angles, conditions))
-        status = _ended(program, folder, end)
+        status = _ended(program, folder, min(end, hung))
         if status in TRAPPED and not untrapped.built():
             untrapped.build_library()
-            status = _ended(program, folder, end)
+            status = _ended(program, folder, min(end, hung))
         version, points = read_polar_dump(folder / "dump.bin")
+        if status is None and hung < end:
+            return version, points, f"XFOIL hung, and was stopped after {patience:g} s", True
         if status is None:
             limit = f"XFOIL was stopped at the time limit of {conditions.time_limit:g} s"
-            return version, points, f"{limit}; raise it, or ask for fewer angles"
+            return version, points, f"{limit}; raise it, or ask for fewer angles", False
         if status in TRAPPED:
-            return version, points, f"XFOIL stopped at a floating-point trap; set {untrapped.NAMED}"
+            return version, points, f"XFOIL stopped at a floating-point trap; set {untrapped.NAMED}", False
         if status != 0 or not version:
             words = " ".join((folder / "output.txt").read_text(errors="replace").split()[-WORDS:])
             how = f"with status {status}" if status else "without a polar dump"
-            return version, points, f"XFOIL, '{program}', ended {how}; its last words: {words or 'none'}"
-        return version, points, ""
+            return version, points, f"XFOIL, '{program}', ended {how}; its last words: {words or 'none'}", False
+        return version, points, "", False
 
 
 def _script(angles: Sequence[float], conditions: Conditions) -> str:
