@@ -6,30 +6,31 @@ chord of 0.245, XFOIL's reference length 1, a Reynolds number of 2.0394e6 per me
 """
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from scipy.spatial import cKDTree
 
 import bladewright as bw
-from bladewright.section.segmented.parts import Morph
 
 REYNOLDS, ALPHA, CHORD = 2.0394e6, 4.0, 0.245
 PAPER = {"initial": (0.1586, 0.00252), "edges": (0.329, 0.00442), "skin": (0.330, 0.00442)}
 """cl and cd of its tables 16 and 17"""
 BAND = 0.005
 """how far the skin may move, of the chord"""
+SAME_LIFT = 0.005
+"""by how much of it the skin may change the lift, as a polar of NeuralFoil has it"""
 EDGES = {"section.morph.leading_edge": (-20.0, 30.0), "section.morph.trailing_edge": (-50.0, 20.0)}
 """deg, as in the paper; a negative trailing edge is a flap down"""
 SKIN = {
-    **{f"section.*.{name}.ordinates[0]": (-0.01, 0.01) for name in ("leading_edge", "trailing_edge")},
-    **{f"section.*.{name}.abscissas[0]": (-0.03, 0.03) for name in ("leading_edge", "trailing_edge")},
-    "section.*.leading_edge.*_scale": (-0.1, 0.1),
-    "section.*.trailing_edge.front_scale": (-0.2, 0.2),
+    **{f"section.*.{name}.skin.ordinates[0]": (-0.01, 0.01) for name in ("leading_edge", "trailing_edge")},
+    **{f"section.*.{name}.skin.abscissas[0]": (-0.03, 0.03) for name in ("leading_edge", "trailing_edge")},
+    "section.*.leading_edge.skin.*_scale": (-0.1, 0.1),
+    "section.*.trailing_edge.skin.front_scale": (-0.2, 0.2),
 }
-"""inner control points and scale factors of the segments 1, 3, 4 and 6, added to those of the airfoil: 14 variables"""
+"""changes of inner control points and scale factors of the segments 1, 3, 4 and 6: 14 variables"""
 
 
 def airfoil():
@@ -45,38 +46,32 @@ def airfoil():
             "name": "naca-23012",
             "chord": CHORD * found.design.chord,
             "tolerance": 1e-5,  # of surfaces that XFOIL cannot tell from closer ones
-            "section.morph": Morph(),
+            "section.morph": bw.Morph(),
         }
     )
 
 
-class Flow:
-    """The figures of a section by one of the solvers, and how far its skin is from that of another one."""
+def with_skin(design):
+    """The same airfoil with skins that may move within their bands."""
+    found = {}
+    for name in ("upper", "lower"):
+        side = getattr(design.section, name)
+        for segment, behind in (("leading_edge", {"rear_scale": 0.0}), ("trailing_edge", {})):
+            skin = bw.Skin(inner=BAND, outer=BAND, abscissas=(0.0,), ordinates=(0.0,), front_scale=0.0, **behind)
+            found[f"section.{name}.{segment}"] = replace(getattr(side, segment), skin=skin)
+    return design.changed(found)
 
-    def __init__(self, solver, turn, like=None):
-        self.solver, self.turn, self.cl = solver, turn, None
-        self.__name__ = solver
-        if like is not None:
-            self.cl, self.skin = like
+
+class Flow:
+    """The figures of a section by XFOIL."""
+
+    def __init__(self, turn):
+        self.turn = turn
 
     def __call__(self, section):
-        polar = bw.polar(section, REYNOLDS, ALPHA - self.turn, reference_length=1.0, solver=self.solver)
+        polar = bw.polar(section, REYNOLDS, ALPHA - self.turn, reference_length=1.0)
         cl, cd, cm = (float(each[0]) for each in (polar.cl, polar.cd, polar.cm))
-        found = {"cl": cl, "cd": cd, "moment": abs(cm), "efficiency": cl / cd}
-        if self.cl is not None:
-            found["circulation_change"] = abs(cl - self.cl)
-            found["skin_moved"] = cKDTree(self.skin).query(outline(section))[0].max() / CHORD
-        return found
-
-
-def outline(section, count=300):
-    """Points (n, 2) of both sides, dense at the nose."""
-    u = np.linspace(0.0, 1.0, count) ** 2
-    return np.concatenate([np.real(section.curves[name](u)) for name in ("upper", "lower")])
-
-
-def aims(flow, **figures):
-    return [{"quantity": flow, "figure": name, "maximise": most} for name, most in figures.items()]
+        return {"cl": cl, "cd": cd, "moment": abs(cm), "efficiency": cl / cd}
 
 
 def main():
@@ -89,7 +84,8 @@ def main():
     given.directory.mkdir(parents=True, exist_ok=True)
 
     start = airfoil()
-    xfoil = Flow("xfoil", start.section.stagger_angle)
+    turn = start.section.stagger_angle
+    xfoil = Flow(turn)
     initial = xfoil(start.build())
     print(f"initial: cl {initial['cl']:.4f}, cd {initial['cd']:.5f}, paper {PAPER['initial']}")
 
@@ -97,7 +93,7 @@ def main():
     turned = bw.optimise(
         start,
         EDGES,
-        aims(xfoil, cl=True, cd=False, moment=False),
+        [{"quantity": xfoil, "figure": name, "maximise": name == "cl"} for name in ("cl", "cd", "moment")],
         population=given.edges[0],
         generations=given.edges[1],
         manifest=given.directory / "edges.jsonl",
@@ -110,22 +106,25 @@ def main():
     base = xfoil(edges.build())
     print(f"edges: {edges.section.morph}: cl {base['cl']:.4f}, efficiency {base['efficiency']:.2f}")
 
-    neuralfoil = Flow("neuralfoil", xfoil.turn, (base["cl"], outline(edges.build(), 8000)))
-    known = edges.parameters()
     skinned = bw.optimise(
-        edges,
+        with_skin(edges),
         {name: {"lower": low, "upper": high, "offset": True} for name, (low, high) in SKIN.items()},
-        aims(neuralfoil, efficiency=True, moment=False, circulation_change=False),
-        [{"quantity": neuralfoil, "figure": "skin_moved", "upper": BAND}],
+        # its moment is nose down
+        [{"quantity": f"tunnel.{name}", "maximise": True} for name in ("lift_to_drag", "cm")],
+        [{"quantity": "tunnel.cl", "lower": 1.0 - SAME_LIFT, "upper": 1.0 + SAME_LIFT, "relative": True}],
+        polars={
+            "tunnel": bw.OperatingPoint(
+                reynolds=REYNOLDS, alpha=ALPHA - turn, reference_length=1.0, solver="neuralfoil"
+            )
+        },
         population=given.skin[0],
         generations=given.skin[1],
         manifest=given.directory / "skin.jsonl",
         **options,
     )
-    assert set(skinned.runs.parameters) < set(known)
     print(skinned)
     # XFOIL's word on the front by NeuralFoil
-    order = np.argsort(-skinned.best.figures["efficiency"])[:30]
+    order = np.argsort(-skinned.best.figures["tunnel.lift_to_drag"])[:30]
     confirmed = [(number, xfoil(skinned.design(number).build())) for number in (skinned.members[i] for i in order)]
     number, best = max(confirmed, key=lambda each: each[1]["efficiency"])
     print(f"skin: run {number}: cl {best['cl']:.4f}, efficiency {best['efficiency']:.2f} by XFOIL")

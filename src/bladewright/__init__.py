@@ -30,7 +30,7 @@ With SU2         surface_points, placed_points (SurfacePoints), read_surface_poi
                  read_surface_sensitivity
 Matching         read_cloud, fit (Fit); fit_curve (CurveFit), fit_surface (SurfaceFit), fit_profile (ProfileFit)
 Imports          import_parablade, import_tblade3 (Imported), read_parablade
-Studies          sweep (Runs), optimise (Optimum, ParetoSet), openmdao_component
+Studies          sweep (Runs), optimise (Optimum, ParetoSet), OperatingPoint, openmdao_component
 CAD files        cad.write, cad.verify, cad.made_from, cad.solid, cad.sample, cad.cut_passage; design_origin (Origin)
 Meshes           meshing.mesh
 Errors           BladewrightError and its kinds: DesignError, GeometryError, FileError, CadError, FitError, MeshError,

@@ -116,6 +116,7 @@ from .section.unified import UnifiedSection as UnifiedSection
 from .section.wedge_diffuser import WedgeDiffuser as WedgeDiffuser
 from .section.wedge_diffuser import WedgeDiffuserSection as WedgeDiffuserSection
 from .studies.openmdao import openmdao_component as openmdao_component
+from .studies.operating_points import OperatingPoint as OperatingPoint
 from .studies.optimise import optimise as optimise
 from .studies.optimum import Optimum as Optimum
 from .studies.pareto import ParetoSet as ParetoSet

@@ -161,6 +161,10 @@ class Design(Part, ABC):
         """Half-thickness laws along the chord of the `upper` and the `lower` side, in families that have such laws."""
         return {}
 
+    def exact(self) -> Any:
+        """The exact outline of a section from which what needs no curves is quicker; None where there is no such."""
+        return None
+
     @abstractmethod
     def build(self) -> Any:
         """The native geometry in metres and radians; the same design always builds the same.

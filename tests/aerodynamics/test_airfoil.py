@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import bladewright as bw
-from bladewright.aerodynamics.airfoil import airfoil_of
+from bladewright.aerodynamics.airfoil import airfoil_of, exact_airfoil
 from bladewright.errors import PolarError
 from machines import built
 from machines.sections import EXAMPLES
@@ -38,6 +38,15 @@ def test_the_airfoil_of_a_section_is_its_outline_in_chords(name):
     start, end = airfoil.points[[0, -1]]
     assert start[1] >= end[1] - 1e-12
     assert np.hypot(*(airfoil.points[len(x) // 2] - airfoil.nose)) < 1e-3
+
+
+@pytest.mark.parametrize("name", [name for name in DESIGNS if name != "unified"])
+def test_the_exact_outline_alone_gives_the_same_airfoil(name):
+    design = DESIGNS[name]
+    exact, own = exact_airfoil(design, design.exact()), airfoil_of(built(design))
+    assert np.array_equal(exact.points, own.points)
+    assert exact.chord == pytest.approx(own.chord, rel=1e-9)
+    assert (exact.nose, exact.cuts, exact.remarks) == (own.nose, own.cuts, own.remarks)
 
 
 def test_a_morphed_airfoil_is_by_the_chord_and_along_the_line_of_the_airfoil_that_is_not():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,9 +12,12 @@ from scipy.optimize import brentq
 from bladewright.aerodynamics.surface_flow import CUTS
 from bladewright.errors import PolarError
 from bladewright.frozen import FrozenRecord
-from bladewright.numerics.elementary import frozen
+from bladewright.numerics.elementary import Array, cross2, dot, frozen
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
+from bladewright.section.checks import UNITS
+from bladewright.section.outline import Outline
+from bladewright.section.planar import PlanarSection
 from bladewright.section.section import Section
 
 POINTS = 121
@@ -65,46 +68,98 @@ def airfoil_of(section: Section) -> Airfoil:
     airfoil's, they hold. A round trailing edge is cut off one radius ahead of its end, square to the camber line, as
     solvers of airfoils take a sharp or a blunt one.
     """
-    sides = {name: section.curves[name] for name in ("upper", "lower")}
-    to_chords, chord = _to_chords(section)
-    remarks = [_of_a_cascade(section)] if section.pitch is not None or section.plane != "x-y" else []
-    ends = {"upper": 1.0, "lower": 1.0}
-    if section.edges[1] == "round":
-        radius = min(section.edge_radii[1] / float(np.real(section.chord)), CUT)
-        ends = {name: _cut(section, to_chords, curve, radius) for name, curve in sides.items()}
-        remarks.append(
+    pitch = section.pitch
+    in_a_cascade = pitch is not None or section.plane != "x-y"
+    solidity = None if pitch is None else float(np.real(section.chord / pitch))
+    remarks = [_of_a_cascade(section.name, solidity)] if in_a_cascade else []
+    if section.outline is not None:
+        chord = section.chord if section.reference_chord is None else section.reference_chord
+        return _airfoil(_exact_shape(section.outline), section.name, float(np.real(chord)), remarks)
+    return _airfoil(_curved_shape(section), section.name, float(np.real(section.chord)), remarks)
+
+
+def exact_airfoil(design: PlanarSection, outline: Outline) -> Airfoil:
+    """That of the section that a 2D design builds, from its exact outline alone: no curves are made."""
+    chord = float(np.real(design.chord))
+    remarks = [] if design.pitch is None else [_of_a_cascade(design.name, chord / float(np.real(design.pitch)))]
+    return _airfoil(_exact_shape(outline), design.name, chord * UNITS[design.length_unit], remarks)
+
+
+Line = Callable[[Reals], Reals]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Shape:
+    """A section in chords, by lines that give points (n, 2) at parameters (n,) in [0, 1]."""
+
+    upper: Line
+    lower: Line
+    camber: Line
+    radius: float
+    """of a round trailing edge; 0: it is none"""
+    cuts: tuple[float, float] = CUTS
+
+
+def _exact_shape(outline: Outline) -> _Shape:
+    def line(points: Callable[[Reals], Array]) -> Line:
+        return lambda s: np.real(points(s)).reshape(-1, 2)
+
+    radius, cuts = 0.0, CUTS
+    if outline.trailing_edge.kind == "round":
+        first, second = (np.real(each).reshape(2) for each in outline.trailing_edge.upper[1:])
+        radius = float(dot(first, first) ** 1.5 / cross2(first, second))
+    if outline.cuts is not None:
+        front, rear = np.real(outline.points(np.array(outline.cuts))[0]).reshape(2, 2)[:, 0]
+        cuts = float(front), float(rear)
+    return _Shape(
+        upper=line(lambda s: outline.points(s)[0]),
+        lower=line(lambda s: outline.points(s)[1]),
+        camber=line(outline.camber),
+        radius=abs(radius),  # real: solvers take real points
+        cuts=cuts,
+    )
+
+
+def _curved_shape(section: Section) -> _Shape:
+    """That of a section without an outline, from its native curves."""
+    ends = np.array([0.0, 1.0])
+    upper, lower = (_complex(section.curves[name](ends)) for name in ("upper", "lower"))
+    start, end = (upper + lower) / 2.0
+
+    def line(curve: Curve) -> Line:
+        def points(u: Reals) -> Reals:
+            level = (_complex(curve(u)) - start) / (end - start)
+            return np.stack([level.real, level.imag], axis=-1)
+
+        return points
+
+    radius = section.edge_radii[1] / float(np.real(section.chord)) if section.edges[1] == "round" else 0.0
+    return _Shape(
+        upper=line(section.curves["upper"]),
+        lower=line(section.curves["lower"]),
+        camber=line(section.camber),
+        radius=radius,
+    )
+
+
+def _airfoil(shape: _Shape, name: str, chord: float, remarks: Sequence[str]) -> Airfoil:
+    sides, radius, notes = (shape.upper, shape.lower), min(shape.radius, CUT), list(remarks)
+    ends = [1.0, 1.0] if radius == 0.0 else [_cut(shape.camber, side, radius) for side in sides]
+    if radius > 0.0:
+        notes.append(
             f"the round trailing edge is cut off {radius:.3g} chords ahead of its end: solvers of airfoils take a "
             "sharp or a blunt one"
         )
-    upper, lower = (to_chords(_points(curve, ends[name])) for name, curve in sides.items())
+    upper, lower = (_points(side, end) for side, end in zip(sides, ends, strict=True))
     lower = lower[1:] if np.allclose(upper[0], lower[0], rtol=0.0, atol=1e-12) else lower
     return Airfoil(
         points=np.concatenate([upper[::-1], lower]),
         chord=chord,
         nose=(float(upper[0, 0]), float(upper[0, 1])),
-        cuts=_cuts(section),
-        name=section.name,
-        remarks=tuple(remarks),
+        cuts=shape.cuts,
+        name=name,
+        remarks=tuple(notes),
     )
-
-
-def _to_chords(section: Section) -> tuple[Callable[[ArrayLike], Reals], float]:
-    """The map from the section's plane to chords, and the chord [m]."""
-    ends = np.array([0.0, 1.0])
-    upper, lower = (_complex(section.curves[name](ends)) for name in ("upper", "lower"))
-    start, end = (upper + lower) / 2.0
-    if section.outline is None:
-        first, last = 0.0 + 0.0j, 1.0 + 0.0j
-    else:
-        above, below = (_complex(np.reshape(side, (2, 2))) for side in section.outline.points(ends))
-        first, last = (above + below) / 2.0
-    turn = (last - first) / (end - start)
-
-    def to_chords(points: ArrayLike) -> Reals:
-        moved = first + turn * (_complex(points) - start)
-        return np.stack([moved.real, moved.imag], axis=-1)
-
-    return to_chords, float(np.real(section.chord)) / float(abs(last - first))  # real: solvers take real points
 
 
 def _complex(points: ArrayLike) -> np.ndarray:
@@ -113,41 +168,30 @@ def _complex(points: ArrayLike) -> np.ndarray:
     return np.asarray(real[..., 0] + 1j * real[..., 1])
 
 
-def _points(curve: Curve, end: float) -> Reals:
-    """Points (n, 2) of a side up to u = `end`, denser towards its ends, by arc length."""
+def _points(side: Line, end: float) -> Reals:
+    """Points (n, 2) of a side up to the parameter `end`, denser towards its ends, by arc length."""
     u = np.linspace(0.0, end, 20 * POINTS)
-    points = np.real(curve(u))
-    steps = np.hypot(*np.diff(points, axis=0).T)
+    steps = np.hypot(*np.diff(side(u), axis=0).T)
     length = np.concatenate([[0.0], np.cumsum(steps)])
     places = length[-1] * (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, POINTS))) / 2.0
-    return np.real(curve(np.interp(places, length, u)))
+    return side(np.interp(places, length, u))
 
 
-def _cut(section: Section, to_chords: Callable[[ArrayLike], Reals], curve: Curve, radius: float) -> float:
-    """The u at which a side is `radius` [chords] ahead of the trailing edge, along the end of the camber line."""
-    line = to_chords(section.camber(np.array([0.99, 1.0])))
+def _cut(camber: Line, side: Line, radius: float) -> float:
+    """The parameter at which a side is `radius` ahead of the trailing edge, along the end of the camber line."""
+    line = camber(np.array([0.99, 1.0]))
     along = (line[1] - line[0]) / np.hypot(*(line[1] - line[0]))
 
     def ahead(u: float) -> float:
-        return float((to_chords(curve(np.array([u])))[0] - line[1]) @ along) + radius
+        return float((side(np.array([u]))[0] - line[1]) @ along) + radius
 
     return 1.0 if ahead(0.5) > 0.0 or ahead(1.0) <= 0.0 else float(brentq(ahead, 0.5, 1.0))
 
 
-def _cuts(section: Section) -> tuple[float, float]:
-    """x/c of the cuts of a segmented airfoil, or the common ones."""
-    places = None if section.outline is None else section.outline.cuts
-    if section.outline is None or places is None:
-        return CUTS
-    front, rear = np.real(section.outline.points(np.array(places))[0]).reshape(2, 2)[:, 0]
-    return float(front), float(rear)
-
-
-def _of_a_cascade(section: Section) -> str:
+def _of_a_cascade(name: str, solidity: float | None) -> str:
     """What a polar of a section of a cascade must say."""
-    pitch = section.pitch
-    spacing = f" at a solidity of {float(np.real(section.chord / pitch)):.3g}" if pitch is not None else ""
+    spacing = "" if solidity is None else f" at a solidity of {solidity:.3g}"
     return (
-        f"'{section.name}' is a section of a cascade{spacing}, and this is the polar of the lone airfoil: neighbours "
+        f"'{name}' is a section of a cascade{spacing}, and this is the polar of the lone airfoil: neighbours "
         "turn the flow, so that neither lift nor drag are those of the cascade"
     )

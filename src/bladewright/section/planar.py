@@ -15,6 +15,7 @@ from bladewright.section.crossing import check_outline, closed_outlines, touchin
 from bladewright.section.family import SectionFamily
 from bladewright.section.laws import Span, check_plain, named_laws
 from bladewright.section.native import SectionKnots, knots_for, native_section
+from bladewright.section.outline import Outline
 from bladewright.section.section import Section
 from bladewright.section.unified_limits import POSITIVE, check_labels
 
@@ -58,12 +59,9 @@ class PlanarSection(Design):
             raise DesignError(f"section is {self.section!r}: the family's parameters are needed")
         check_plain((f"section.{path}", law) for path, law in named_laws(self.section))
 
-    def build(self, knots: SectionKnots | None = None) -> Section:
-        """The section in metres and radians; raises DesignError where the shape is impossible.
-
-        `knots` are those to hold, a section's own `knots`.
-        """
-        span, metre = Span(np.zeros(1)), checks.UNITS[self.length_unit]
+    def exact(self) -> Outline:
+        """The exact section in chords, checked as for `build`; raises DesignError where the shape is impossible."""
+        span = Span(np.zeros(1))
         with naming("section", self.section):
             outline = self.section.outline(span)
             turn = self.section.stagger(span)[..., 0]
@@ -71,6 +69,16 @@ class PlanarSection(Design):
         if self.pitch is not None:
             rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
             self._check_pitch(closed_outlines(outline) @ np.real(rotation).T, self.pitch)
+        return outline
+
+    def build(self, knots: SectionKnots | None = None) -> Section:
+        """The section in metres and radians; raises DesignError where the shape is impossible.
+
+        `knots` are those to hold, a section's own `knots`.
+        """
+        outline = self.exact()
+        span, metre = Span(np.zeros(1)), checks.UNITS[self.length_unit]
+        turn = self.section.stagger(span)[..., 0]
         return native_section(
             outline,
             knots_for(outline, self.tolerance) if knots is None else knots,

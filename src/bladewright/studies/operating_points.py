@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from bladewright.aerodynamics.airfoil import airfoil_of, exact_airfoil
 from bladewright.aerodynamics.polar import COLUMNS, Polar, Solver, polar
 from bladewright.designs import Design, unknown
 from bladewright.errors import PolarError, StudyError
@@ -52,9 +53,12 @@ class OperatingPoint:
 
     def polar(self, built: BuiltDesign) -> Polar:
         """The polar of what is built; PolarError where the solver is missing or gives nothing."""
-        section = built.built if built.design.dimension == 2 else built.built.section(self.span)
+        if built.outline is not None:
+            subject = exact_airfoil(built.design, built.outline)
+        else:
+            subject = airfoil_of(built.built if built.design.dimension == 2 else built.built.section(self.span))
         return polar(
-            section,
+            subject,
             self.reynolds,
             self.angles,
             mach=self.mach,
@@ -76,6 +80,7 @@ class PolarFigure(Quantity):
     coefficient: str
     """one of COEFFICIENTS"""
     design: str
+    needs_curves: ClassVar[bool] = False
 
     def of(self, built: Mapping[str, BuiltDesign]) -> Any:
         own = built[self.design]

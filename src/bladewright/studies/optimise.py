@@ -23,6 +23,7 @@ from bladewright.studies.gradient_search import least
 from bladewright.studies.manifest import Manifest, read_manifest
 from bladewright.studies.nsga2 import Asked as AskedRuns
 from bladewright.studies.nsga2 import nsga2, pymoo_version
+from bladewright.studies.operating_points import OperatingPoint
 from bladewright.studies.optimality import Optimality
 from bladewright.studies.optimum import Optimum
 from bladewright.studies.pareto import ParetoSet
@@ -50,6 +51,7 @@ def optimise(
     objectives: Asked | Objective | Sequence[Asked | Objective],
     constraints: Limits = (),
     *,
+    polars: Mapping[str, OperatingPoint] | None = None,
     method: Method | None = None,
     tolerance: float = 1e-6,
     iterations: int = 200,
@@ -69,7 +71,8 @@ def optimise(
     section, or a table such as `{"quantity": "throat_area", "maximise": True}`; `constraints` are lowest and highest
     values by name, `{"throat_area": (5e3, None)}`, or tables such as
     `{"quantity": thickness, "lower": 0.9, "relative": True}`. With `"adjoint": True` a function returns the figure and
-    its derivatives by points of the surfaces, as `pullback` takes them.
+    its derivatives by points of the surfaces, as `pullback` takes them. `polars` are operating points by name, whose
+    quantities are `POINT.cl`, `POINT.cd` and so on.
 
     `method` "slsqp" and "trust-constr" take exact derivatives at held knots: one objective gives an `Optimum`, two give
     a front of so many `members`, each of which meets the conditions of an optimum within `tolerance`. "nsga2" needs no
@@ -102,6 +105,7 @@ def optimise(
         designs=designs,
         ranges={name: range_of(name, given) for name, given in variables.items()},
         optimise=options,
+        polars=polars or {},
     )
     return Search(study).carried_out(manifest, jobs=jobs, scheduler=scheduler, progress=progress)
 

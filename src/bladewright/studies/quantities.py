@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
 from types import ModuleType
-from typing import Any, final
+from typing import Any, ClassVar, final
 
 import numpy as np
 
@@ -35,10 +35,13 @@ COMPONENTS: Mapping[tuple[int, ...], tuple[str, ...]] = {
 
 @final
 class BuiltDesign:
-    """A design and what it builds; what several quantities need of it is worked out once."""
+    """A design and what it builds; what several quantities need of it is worked out once.
 
-    def __init__(self, design: Any, built: Any) -> None:
-        self.design, self.built = design, built
+    Where no quantity needs curves, it may have the exact `outline` of a section in their place.
+    """
+
+    def __init__(self, design: Any, built: Any, outline: Any = None) -> None:
+        self.design, self.built, self.outline = design, built, outline
         self._found: dict[Any, Any] = {}
 
     def once(self, key: Hashable, make: Callable[[], Any]) -> Any:
@@ -80,6 +83,8 @@ class Quantity(ABC):
     """by which the manifest has it; that of the design and a colon before it where a study has several"""
     design: str | None = None
     """of which design of the study; None: of all of them together"""
+    needs_curves: ClassVar[bool] = True
+    """whether the exact outline of a section does not serve it"""
 
     @abstractmethod
     def of(self, built: Mapping[str, BuiltDesign]) -> Any:

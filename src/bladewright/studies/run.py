@@ -106,9 +106,18 @@ def record_of(experiment: Experiment, run: int, parameters: Mapping[str, Any]) -
 
 
 def built_designs(experiment: Experiment, parameters: Mapping[str, Any]) -> dict[str, BuiltDesign]:
-    """The designs of a run by name, built; DesignError where one is impossible."""
+    """The designs of a run by name, built; DesignError where one is impossible.
+
+    Where no quantity needs curves and no files are written, sections are left at their exact outlines.
+    """
     designs = changed_designs(experiment.designs, experiment.variables, parameters)
-    return {name: BuiltDesign(design, design.build()) for name, design in designs.items()}
+    wanted = experiment.quantities
+    curves = bool(experiment.files) or not wanted or any(each.needs_curves for each in wanted)
+    outlines = {name: None if curves else design.exact() for name, design in designs.items()}
+    return {
+        name: BuiltDesign(design, design.build() if outlines[name] is None else None, outlines[name])
+        for name, design in designs.items()
+    }
 
 
 def measured(quantities: Sequence[Quantity], built: Mapping[str, BuiltDesign]) -> tuple[Figures, list[str]]:
