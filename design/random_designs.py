@@ -56,6 +56,7 @@ REASONS = {
     "of the span is left": "too little of the span is left above a fillet",
     "CAD programs lose narrower faces": "a fillet is smaller than 1e-4 of the chord",
     "crosses itself": "the foot of a fillet crosses itself",
+    "of its radius, at most": "a fillet of kind curvature where a curvature jumps",
     "miss what is promised": "a fillet is not reached within 300 poles along the chord",
     "axes are so unlike": "an ellipse's axes are too unlike for the angle of blade and wall",
     "touches the blade past": "a fillet is higher than its blade",

@@ -305,7 +305,7 @@ def test_a_fillet_turns_at_once_where_the_curvature_of_a_side_jumps():
 
 @pytest.mark.slow
 def test_a_fillet_that_needs_too_many_poles_names_the_largest_radius_that_does_not(monkeypatch):
-    monkeypatch.setattr("bladewright.blade.native.fillet_knots.KINK", 9.0)
+    monkeypatch.setattr("bladewright.blade.native.fillet_joints.KINK", 9.0)
     monkeypatch.setattr("bladewright.blade.native.fillet_knots.MOST_POLES", (260, 60))
     plain = bw.read_design(files("bladewright") / "examples" / "exhaust-strut.toml")
     asked = plain.changed("hub_fillet", Fillet(radius=0.04 * plain.build().chord / plain.metre))
@@ -329,6 +329,21 @@ def test_a_fillet_that_needs_too_many_poles_names_the_largest_radius_that_does_n
 def test_a_random_fillet_is_refused_for_what_stops_it(seed, says):
     with pytest.raises(bw.DesignError, match=says):
         random_parts.random_design(seed).build()
+
+
+@pytest.mark.parametrize(("seed", "jumps"), [(169, "shroud"), (153, "upper side")])
+def test_a_fillet_that_takes_on_a_curvature_that_jumps_is_refused_and_the_cure_holds(seed, jumps):
+    design = random_parts.random_design(seed)
+    with pytest.raises(bw.DesignError, match=f"the curvature of the {jumps} jumps.*take kind = .radius."):
+        design.build()
+    assert design.changed("shroud_fillet.kind", "radius").build().properties.volume > 0.0
+
+
+@pytest.mark.parametrize(("seed", "poles"), [(249, 270), (372, 180)])
+def test_knots_stand_where_contacts_cross_joints_of_walls_and_curvatures_bend_at_edges(seed, poles):
+    """More than 300 control points were asked for."""
+    fillet = random_parts.random_design(seed).build().surfaces["hub_fillet_upper"]
+    assert len(fillet.control_points) < poles
 
 
 def test_a_suction_side_that_is_not_known_is_refused():

@@ -181,7 +181,7 @@ class ClosedSection(FrozenRecord):
 class SectionSplines(FrozenRecord):
     """Splines around the section on the same inner knots of both sides, cut into one of each face.
 
-    Across round edges they keep `ACROSS_EDGES` derivatives; at corners each face ends. Interpolation at the sites is
+    Across round edges they keep `across` derivatives; at corners each face ends. Interpolation at the sites is
     linear in the values there, and its matrices are the same for every row of a net.
     """
 
@@ -190,6 +190,8 @@ class SectionSplines(FrozenRecord):
     smooth: tuple[bool, bool]
     blunt: Mapping[int, Reals] = field(default_factory=lambda: FrozenMapping({}))
     """the same of the faces of blunt edges"""
+    across: int = ACROSS_EDGES
+    """derivatives kept across round edges"""
 
     @property
     def knots_of(self) -> dict[int, Reals]:
@@ -211,7 +213,7 @@ class SectionSplines(FrozenRecord):
     @property
     def _side_lines(self) -> list[tuple[Reals, tuple[tuple[int, float, float], ...], bool]]:
         inner = self.knots[DEGREE + 1 : -DEGREE - 1]
-        at_edge = DEGREE - ACROSS_EDGES
+        at_edge = DEGREE - self.across
         leading, trailing = self.smooth
         up, down = (UPPER, 0.0, 1.0), (LOWER, 2.0, -1.0)
         clamp = DEGREE + 1

@@ -8,10 +8,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from bladewright.blade.native.blade import Blade
-from bladewright.blade.native.closed_section import LOWER, UPPER, ClosedSection, SectionSplines, Sites
-from bladewright.blade.native.contacts import Contacts, rates
+from bladewright.blade.native.closed_section import ACROSS_EDGES, LOWER, UPPER, ClosedSection, SectionSplines, Sites
+from bladewright.blade.native.contacts import Contacts
 from bladewright.blade.native.cross_section import CrossSections
 from bladewright.blade.native.end_faces import EndKnots
+from bladewright.blade.native.fillet_joints import check_curvatures, kinks
 from bladewright.blade.native.fillet_limits import check_fillets, named, scaled
 from bladewright.blade.native.knots import DEGREE, Knots, clamped, refined
 from bladewright.blade.native.pivot import ACROSS, Pivot, Turning, pivots_of
@@ -32,19 +33,14 @@ AT_JOINTS = 1e-9
 MOST_POLES = (300, 60)
 """Control points of fillets around the blade, on one side, and of strips along w at which knots are added no more: half
 as many again as a plain blade may have, for what the foot asks for, and twice what a strip of any example has."""
-KINK = 1e-3
-"""Turn of a contact's way in one point that asks for a knot without derivatives [rad]: a few knots round smaller ones
-within any tolerance, larger ones ask for a hundred."""
-BESIDE = 1e-9
-"""Distance in u from a joint of a side at which that turn is looked at."""
 QUARTERS = np.array([0.25, 0.5, 0.75])
 """Knots of a fillet about a corner to begin with: in one span, errors at its ends are larger than those looked at."""
 LINES = 12
 """About how many lines of a strip are looked at on each side for its knots along them."""
 PLACES = np.array([0.0, 0.2, 0.5])
 """w of the strips at which knots around the blade are looked at: at 1 they have those of the side."""
-
-
+LOOKED_AT = np.linspace(0.0, 1.0, 1001)
+"""u at which it is seen whether a ball that needs too many poles folds or loses contact between the first sites."""
 NEAREST, LEAST_TRIED = 1.04, 0.1
 """Ratio of a radius that needs too many poles to one that does not, at which the search for the largest ends, and the
 share of the one asked for below which none is tried: each takes a second."""
@@ -83,6 +79,9 @@ def chosen_knots(blade: Blade, section: ClosedSection, balls: Mapping[str, Ball]
     try:
         return _held(blade, section, balls, fine=fine)
     except _TooManyPolesError as found:
+        sites = Sites(side=np.repeat([UPPER, LOWER], len(LOOKED_AT)), u=np.tile(LOOKED_AT, 2))
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            check_fillets(blade, balls, Rolled.at(section, balls, sites))
         # one that needs few enough, by halves, and then as near below as poles tell
         low, high = 0.0, 1.0
         while high > max(NEAREST * low, LEAST_TRIED):
@@ -104,10 +103,15 @@ def chosen_knots(blade: Blade, section: ClosedSection, balls: Mapping[str, Ball]
 
 def _held(blade: Blade, section: ClosedSection, balls: Mapping[str, Ball], *, fine: bool) -> FilletKnots:
     plain = {face: surface.knots_u for face, surface in section.blunt.items()}
-    first = SectionSplines(knots=blade.sides[0].knots_u, smooth=section.smooth, blunt=FrozenMapping(plain))
+    # a curvature loses one derivative more than normals do
+    across = ACROSS_EDGES - any(ball.curved for ball in balls.values())
+    first = SectionSplines(
+        knots=blade.sides[0].knots_u, smooth=section.smooth, blunt=FrozenMapping(plain), across=across
+    )
     # balls that are far too large find no numbers, and are refused for it
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         rolled = Rolled.at(section, balls, first.sites)
+        check_curvatures(rolled)
         check_fillets(blade, balls, rolled)
     tolerance = RESERVE * blade.tolerance * blade.chord
     side = blade.sides[0]
@@ -126,7 +130,7 @@ def _held(blade: Blade, section: ClosedSection, balls: Mapping[str, Ball], *, fi
     strips = {wall: _in_spans(strip, few.touches[wall], wall, tolerance) for wall, strip in strips.items()}
     off_wall = RESERVE * wall_tolerance(blade.chord, fine=fine)
     edges = [(strip.width, 1.0 - strip.width)[int(u)] for strip in strips.values() for _, u in section.corner_sides]
-    joints = [(at, DEGREE - 1) for at in edges] + [(at, 0) for at in _kinks(rolled)]
+    joints = [(at, DEGREE - 1) for at in edges] + [(at, 0) for at in kinks(rolled)]
     splines = first.with_knots(UPPER, knots_with_joints(first.knots, DEGREE, joints))
     for face in (UPPER, *section.blunt):
         splines = _around(splines, face, rolled, strips, (tolerance, off_wall))
@@ -147,23 +151,6 @@ def _held(blade: Blade, section: ClosedSection, balls: Mapping[str, Ball], *, fi
         splines=splines,
         pivots=FrozenMapping(pivots),
     )
-
-
-def _kinks(rolled: Rolled) -> list[float]:
-    """u at which contacts turn by more than KINK, where the curvature of a side jumps."""
-    places, counts = np.unique(rolled.section.upper.knots_u, return_counts=True)
-    joints = places[1:-1][counts[1:-1] >= DEGREE - 1]
-    if not len(joints):
-        return []
-    faces, u = np.repeat([UPPER, LOWER], 2 * len(joints)), np.concatenate([joints - BESIDE, joints + BESIDE])
-    beside = Rolled.at(rolled.section, rolled.balls, Sites(side=faces, u=np.tile(u, 2)), rolled.found)
-    turns = []
-    for touch in beside.touches.values():
-        ways = rates(touch.section, touch.ball.wall, touch.found, touch.ball.growth(touch.found.sites))[:2]
-        for way in ways:
-            before, after = np.moveaxis(unit(way).reshape(2, 2, len(joints), 3), 1, 0)
-            turns.append(np.max(length(after - before), axis=0))
-    return list(joints[np.max(turns, axis=0) > KINK])
 
 
 def levels(strips: Mapping[str, Strip]) -> tuple[float, float]:
