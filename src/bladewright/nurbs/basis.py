@@ -82,9 +82,16 @@ def _cached_matrix(knots: bytes, degree: int, u: bytes, order: int) -> Reals:
 
 
 def _matrix(knots: Reals, degree: int, u: Reals, order: int) -> Reals:
-    matrix: Reals = BSpline(knots, np.eye(len(knots) - degree - 1), degree)(u, nu=order)
+    matrix: Reals = _functions(knots.tobytes(), degree)(u, nu=order)
     matrix.setflags(write=False)
     return matrix
+
+
+@lru_cache(maxsize=64)
+def _functions(knots: bytes, degree: int) -> BSpline:
+    """All basis functions as one spline: to make one takes longer than to evaluate it at a few parameters."""
+    on = np.frombuffer(knots)
+    return BSpline(on, np.eye(len(on) - degree - 1), degree)
 
 
 def checked_knots(knots: ArrayLike, degree: int, count: int, name: str) -> Reals:

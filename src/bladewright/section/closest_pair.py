@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.distance import cdist
 
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, dot, length
@@ -56,12 +57,12 @@ def closest_pair(own: Outline, other: Outline, count: int) -> tuple[Reals, Reals
         ends = np.where(reached, found[0], ends[0]), np.where(reached, found[1], ends[1])
         held = np.where(reached, still[0], held[0]), np.where(reached, still[1], held[1])
         missing = missing & ~reached
-    if missing.any():
-        raise DesignError(
-            f"the throat cannot be located at place {int(np.argmax(missing)) + 1} of {count} along the span: no pair "
-            "of points of neighbouring blades is the closest; change the turning or the thickness there a little"
-        )
-    return ends[0], ends[1], held
+        if not missing.any():
+            return ends[0], ends[1], held
+    raise DesignError(
+        f"the throat cannot be located at place {int(np.argmax(missing)) + 1} of {count} along the span: no pair "
+        "of points of neighbouring blades is the closest; change the turning or the thickness there a little"
+    )
 
 
 def newton_step(own: Outline, other: Outline, pair: tuple[Array, Array], held: Held) -> tuple[Array, Array]:
@@ -105,7 +106,7 @@ def _closest_of(own: Outline, other: Outline, first: Reals, second: Reals) -> tu
     starts, stops = own(first, 0), other(second, 0)
     found = np.empty((2, first.shape[1]))
     for place in range(first.shape[1]):
-        gap = stops[None, :, place] - starts[:, None, place]
-        i, j = np.unravel_index(int(np.argmin(dot(gap, gap))), gap.shape[:2])
+        gaps = cdist(starts[:, place], stops[:, place], "sqeuclidean")
+        i, j = np.unravel_index(int(np.argmin(gaps)), gaps.shape)
         found[:, place] = first[i, place], second[j, place]
     return found[0], found[1]

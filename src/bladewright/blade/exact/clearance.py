@@ -10,6 +10,7 @@ in u. So the meridian starts on the leading- and ends on the trailing-edge curve
 """
 
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -41,6 +42,8 @@ _SHARES = np.array([0.03, 0.09, 0.2, 0.35, 0.5, 0.65, 0.8, 0.91, 0.97])
 is largest there."""
 STEPS = 30
 """Newton steps after which no point at the distance is expected any more; mostly four suffice."""
+CONVERGED = 1e-16
+"""Square of a Newton step in u below which it is the last: the error left is of that size, which is rounding."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -167,7 +170,10 @@ def off_distance(full: TransfiniteChannel, clearance: Clearance, u: Reals, point
     for _ in range(8):
         foot, slope, bend = (wall.values(foot_u, order) for order in range(3))
         gap = points - foot
-        foot_u = foot_u + dot(gap, slope) / (dot(slope, slope) - dot(gap, bend))
+        step = dot(gap, slope) / (dot(slope, slope) - dot(gap, bend))
+        foot_u = foot_u + step
+        if np.max(np.square(step)) < CONVERGED:
+            break
     return np.abs(length(points - wall.values(foot_u)) - clearance.real().distance(u))  # real: a measured distance
 
 
@@ -188,8 +194,10 @@ def _knots(full: TransfiniteChannel, clearance: Clearance) -> Reals:
     start = knots_with_joints(clamped(np.empty(0)), DEGREE, [*joints, *_passed(full, clearance)])
     chord = float(np.mean([length(each.corners[1] - each.corners[0]) for each in (full.hub, full.shroud)]))
 
-    def worst(knots: Reals) -> Reals:
-        """Largest miss in each of the spans, of the chord."""
+    @cache
+    def worst(on: bytes) -> Reals:
+        """Largest miss in each of the spans of knots, of the chord."""
+        knots = np.frombuffer(on)
         sites, spans = greville(knots, DEGREE), np.unique(knots)
         points = full.at(sites, _met(full, clearance, sites)[0])[0]
         u = (spans[:-1, None] + np.diff(spans)[:, None] * _SHARES).ravel()
@@ -197,10 +205,10 @@ def _knots(full: TransfiniteChannel, clearance: Clearance) -> Reals:
         return np.max(off_distance(full, clearance, u, found).reshape(-1, len(_SHARES)), axis=1) / chord
 
     def miss(knots: Reals, places: Reals) -> Reals:
-        return worst(knots)[np.searchsorted(np.unique(knots), places) - 1] / REACHED
+        return worst(knots.tobytes())[np.searchsorted(np.unique(knots), places) - 1] / REACHED
 
     knots = refined(start, miss, MOST_POLES)
-    gap = float(np.max(worst(knots)))
+    gap = float(np.max(worst(knots.tobytes())))
     clearance.check_met(gap, knots, full.line(clearance.wall).given_by)
     return knots
 
@@ -230,8 +238,7 @@ def _met(full: TransfiniteChannel, clearance: Clearance, u: Reals) -> tuple[Real
         size = float(np.max(np.square(steps)))
         if not size < 1.0:
             break
-        # a step this small leaves an error of its square
-        if size < 1e-16:
+        if size < CONVERGED:
             if np.all((places > 0.0) & (places < 1.0) & (_bend(full, clearance, foot_u) * clearance.distance(u) < 1.0)):
                 return places, foot_u
             break

@@ -1,8 +1,6 @@
 """Stream lines as polynomials on panels of u: position, length or m' along them, and the inverse of these."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
 from math import perm
 from typing import Protocol
 
@@ -18,12 +16,11 @@ from bladewright.nurbs.basis import Reals
 NODES = 24
 """Chebyshev nodes of the density da/du on a panel. Panels are halved until the series ends in rounding, so more
 nodes mean fewer and dearer panels."""
-INVERSE_NODES = 22
-"""Chebyshev nodes of the inverse u(a) on a panel, from which Newton's method starts: so many that one step mostly
-suffices."""
-MANY_PANELS = 5
-"""Number of panels from which on all points are evaluated at once with the coefficients of their panels, instead of
-panel after panel. It trades memory for calls and changes no result."""
+ROUNDING = 3e-16
+"""Share of the largest term of a density's series, below which its last terms are left out: where curves with many
+knots make many panels, the series end early."""
+PIECES = 16
+"""About how many pieces a stream line has, whose cubics give Newton's method its start: so many that two steps do."""
 CONVERGED = 3e-8
 """Newton step in u at which the iteration ends: the error left is its square, which is rounding."""
 
@@ -39,7 +36,7 @@ class MeridionalChannel(Protocol):
 
 
 Panel = int | NDArray[np.intp]
-"""a panel by its number, or a number for each point"""
+"""the panel of all points by its number, or that of each point (..., m, k)"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,7 +60,9 @@ class StreamLines:
     def position(self, u: Array, order: int = 0) -> Array:
         """(x, r) or derivatives by u (..., m, k, 2) at u (..., m, k) or (k,)."""
         u = np.broadcast_to(u, np.broadcast_shapes((*self.starts.shape[:-1], 1), np.shape(u)))
-        return self._by_panel(u, lambda panel, part: self._polynomial(panel, part, order))
+        panel = self._panel(u)
+        t = u - (self.panels[panel] + self.panels[panel + 1]) / 2.0
+        return np.stack([_horner(_rows_of(self.powers[..., i], panel), t, order) for i in (0, 1)], axis=-1)
 
     def densities(self, u: Array) -> tuple[Array, Array]:
         """da/du and d2a/du2 (..., m, k) at u (..., m, k) or (k,)."""
@@ -89,18 +88,16 @@ class StreamLines:
     def abscissa(self, u: Array) -> Array:
         """The abscissa (..., m, k) in the plane at u (..., m, k) or (k,)."""
         u = np.broadcast_to(u, np.broadcast_shapes((*self.starts.shape[:-1], 1), np.shape(u)))
-        return self._by_panel(u, self._panel_abscissa)
+        panel = self._panel(u)
+        return _clenshaw(_rows_of(self.series, panel), self._local(panel, u)) + _of(self.starts, panel)
 
     def u_at(self, abscissa: Array) -> Array:
         """u (..., m, k) at an abscissa (..., m, k): Newton in real numbers, its derivative by one more complex step."""
         real = np.real(abscissa)
         if not (np.iscomplexobj(abscissa) or np.iscomplexobj(self.series)):
             return self._inverse(real)
-        if real.ndim > 2:
-            flat = real.reshape(-1, *real.shape[-2:])
-            real = flat[0]
         lines = self.real()
-        u = lines.u_at(real)
+        u = lines.u_at(real[(0,) * (real.ndim - 2)])
         moved = -np.imag(abscissa)
         if np.iscomplexobj(self.series):
             moved = moved + lines.batched_abscissa(u, np.imag(self.series), np.imag(self.starts))
@@ -108,14 +105,15 @@ class StreamLines:
 
     def rate(self, u: Array) -> Array:
         """da/du (..., m, k) at u (..., m, k), by its series."""
-        return self._by_panel(u, self._panel_rate)
+        panel = self._panel(u)
+        return _clenshaw(_rows_of(self.density, panel), self._local(panel, u))
 
     def batched_abscissa(self, u: Reals, series: Reals, starts: Reals) -> Reals:
         """The abscissa (..., m, k) at u (m, k) that a batch of series (..., m, p, n) and starts (..., m, p + 1) gives.
 
         All are evaluated at the same u, so that each stream line is one product with Chebyshev polynomials.
         """
-        index, count = self._panel_index(u), series.shape[-1]
+        index, count = self._panels_of(u), series.shape[-1]
         own = chebyshev.chebvander(self._local(index, u), count - 1)
         polynomials = np.zeros((*u.shape, len(self.panels) - 1, count))
         np.put_along_axis(polynomials, index[..., None, None], own[..., None, :], axis=-2)
@@ -126,7 +124,10 @@ class StreamLines:
     def _inverse(self, abscissa: Reals) -> Reals:
         u = self._guess(abscissa)
         for _ in range(30):
-            step = self._newton_step(u, abscissa)
+            panel = self._panel(u)
+            local = self._local(panel, u)
+            miss = _clenshaw(_rows_of(self.series, panel), local) + _of(self.starts, panel) - abscissa
+            step = miss / _clenshaw(_rows_of(self.density, panel), local)
             u = u - step
             if np.max(np.abs(step), initial=0.0) < CONVERGED:  # real: a stopping rule
                 return u
@@ -136,25 +137,24 @@ class StreamLines:
         )
 
     def _guess(self, abscissa: Reals) -> Reals:
-        index = np.sum(abscissa[..., None] >= self.starts[..., None, 1:-1], axis=-1)
+        """u (m, k) by cubics that have the abscissa and its slope at the ends of pieces of the panels."""
+        x = np.linspace(-1.0, 1.0, 1 + max(1, PIECES // (len(self.panels) - 1)))
+        places = _clenshaw(_first(self.series)[..., None], x) + self.starts[..., :-1, None]
+        rates = _clenshaw(_first(self.density)[..., None], x)
+        of_pieces = places[..., :-1], np.diff(places), rates[..., :-1], rates[..., 1:]
+        starts, extents, firsts, lasts = (each.reshape(*each.shape[:-2], -1) for each in of_pieces)
+        widths = np.repeat(np.diff(self.panels), len(x) - 1) / (len(x) - 1)
+        piece = _shared(np.sum(abscissa[..., None] >= starts[..., None, 1:], axis=-1))
+        start, extent, first, last = (_of(each, piece) for each in (starts, extents, firsts, lasts))
+        low, width = (self.panels[0] + np.cumsum(widths) - widths)[piece], widths[piece]
+        t = (abscissa - start) / extent
+        return low + width * t + t * (1.0 - t) * ((1.0 - t) * (extent / first - width) - t * (extent / last - width))
 
-        def on_panel(panel: Panel, part: Reals) -> Reals:
-            start, end = _of(self.starts, panel), _of(self.starts, panel + 1)
-            return _clenshaw(_rows_of(self._rough_inverse, panel), (2.0 * part - start - end) / (end - start))
-
-        return _patched(index, abscissa, on_panel)
-
-    @cached_property
-    def _rough_inverse(self) -> Reals:
-        """Chebyshev series (m, p, INVERSE_NODES) of u by the abscissa on each panel, by a few Newton steps."""
-        extent = np.diff(self.starts)[..., None]
-        local = _GUESS_PLACES
-        for _ in range(4):
-            value = _clenshaw(self.series[..., None, :], local) - extent * (1.0 + _GUESS_PLACES) / 2.0
-            step = value / _clenshaw(self.density[..., None, :], local) / (np.diff(self.panels)[:, None] / 2.0)
-            local = np.clip(local - step, -1.0, 1.0)
-        u = self.panels[:-1, None] + np.diff(self.panels)[:, None] * (1.0 + local) / 2.0
-        return u @ _GUESS_SERIES.T
+    def trimmed(self) -> "StreamLines":
+        """The same without the last terms of the series that are rounding, also in the derivatives that are carried."""
+        sizes = [np.max(np.abs(part), axis=(-3, -2)) for part in (self.density.real, self.density.imag)]  # real: parts
+        count = max(_significant(size) for size in sizes)
+        return replace(self, density=self.density[..., :count], series=self.series[..., : count + 1])
 
     def real(self) -> "StreamLines":
         """The same without imaginary parts and batch."""
@@ -169,32 +169,18 @@ class StreamLines:
             lengths=np.real(self.lengths[first]),
         )
 
-    def _newton_step(self, u: Array, abscissa: Array) -> Array:
-        index = self._panel_index(u)
-        return _patched(index, np.stack([u, abscissa]), lambda panel, part: self._panel_step(panel, part[0], part[1]))
-
-    def _panel_step(self, panel: Panel, u: Array, abscissa: Array) -> Array:
-        return (self._panel_abscissa(panel, u) - abscissa) / self._panel_rate(panel, u)
-
-    def _panel_rate(self, panel: Panel, u: Array) -> Array:
-        return _clenshaw(_rows_of(self.density, panel), self._local(panel, u))
-
-    def _panel_abscissa(self, panel: Panel, u: Array) -> Array:
-        return _clenshaw(_rows_of(self.series, panel), self._local(panel, u)) + _of(self.starts, panel)
-
     def _local(self, panel: Panel, u: Array) -> Array:
         low, high = self.panels[panel], self.panels[panel + 1]
         return (2.0 * u - low - high) / (high - low)
 
-    def _by_panel(self, u: Array, on_panel: Callable[[Panel, Array], Array]) -> Array:
-        return _patched(self._panel_index(u), u, on_panel)
+    def _panels_of(self, u: Array) -> NDArray[np.intp]:
+        """The panels of points (..., m, k)."""
+        return _shared(np.clip(np.searchsorted(self.panels, np.real(u), side="right") - 1, 0, len(self.panels) - 2))
 
-    def _panel_index(self, u: Array) -> Array:
-        return np.clip(np.searchsorted(self.panels, np.real(u), side="right") - 1, 0, len(self.panels) - 2)
-
-    def _polynomial(self, panel: Panel, u: Array, order: int) -> Array:
-        t = u - (self.panels[panel] + self.panels[panel + 1]) / 2.0
-        return np.stack([_horner(_rows_of(self.powers[..., i], panel), t, order) for i in (0, 1)], axis=-1)
+    def _panel(self, u: Array) -> Panel:
+        index = self._panels_of(u)
+        first = int(index.flat[0]) if index.size else 0
+        return index if np.any(index != first) else first
 
 
 def stream_lines(
@@ -215,7 +201,7 @@ def stream_lines(
             break
         middles = ((ends[:-1] + ends[1:]) / 2.0)[poor]
         ends = np.sort(np.concatenate([ends, middles]))
-    return lines
+    return lines.trimmed()
 
 
 def _on_panels(
@@ -260,60 +246,57 @@ def _on_panels(
     return lines, tail
 
 
-def _patched(index: Array, values: Array, on_panel: Callable[[Panel, Array], Array]) -> Array:
-    """The functions of the panels at points of each; a panel is evaluated only in the columns where it has points."""
-    counts = np.bincount(index.ravel())
-    main = int(np.argmax(counts))
-    if counts[main] == index.size:
-        return on_panel(main, values)
-    if np.count_nonzero(counts) >= MANY_PANELS:
-        return on_panel(index, values)
-    result = np.array(on_panel(main, values))
-    for panel in np.flatnonzero(counts):
-        if panel == main:
-            continue
-        inside = index == panel
-        columns = np.any(inside.reshape(-1, inside.shape[-1]), axis=0)
-        part = on_panel(int(panel), values[..., columns])
-        inside = inside[..., columns]
-        if part.ndim == result.ndim and result.ndim > index.ndim:
-            result[..., columns, :] = np.where(inside[..., None], part, result[..., columns, :])
-        else:
-            result[..., columns] = np.where(inside, part, result[..., columns])
-    return result
+def _significant(sizes: Reals) -> int:
+    """Number of terms up to the last that is more than rounding in any of the series of sizes (..., n)."""
+    return 1 + int(np.max(np.nonzero(sizes > ROUNDING * np.max(sizes, axis=-1, keepdims=True))[-1], initial=0))
 
 
 def _of(values: Array, panel: Panel) -> Array:
-    """Values (..., m, p) of a panel as (..., m, 1), or of each point's panel (..., m, k) as (..., m, k)."""
-    return _rows_of(values[..., None], panel)[..., 0]
+    """Values (..., m, p) of a panel as (..., m, 1), or of each point's panel as (..., m, k)."""
+    return _rows_of(values[..., None], panel)[0]
 
 
 def _rows_of(coefficients: Array, panel: Panel) -> Array:
-    """Coefficients (..., m, p, n) of a panel as (..., m, 1, n), or of each point's (..., m, k) as (..., m, k, n)."""
+    """Coefficients (..., m, p, n) of a panel as (n, ..., m, 1), or of each point's panel as (n, ..., m, k)."""
+    first = _first(coefficients)
     if isinstance(panel, int):
-        return coefficients[..., panel, None, :]
-    count = max(coefficients.ndim, panel.ndim + 1)
-    index = panel.reshape((1,) * (count - panel.ndim - 1) + (*panel.shape, 1))
-    return np.take_along_axis(coefficients[(None,) * (count - coefficients.ndim)], index, axis=-2)
+        return first[..., panel, None]
+    if panel.ndim > 2:
+        batch = np.broadcast_shapes(first.shape[1:-2], panel.shape[:-2])
+        each = np.broadcast_to(first, (len(first), *batch, *first.shape[-2:]))
+        return np.take_along_axis(each, np.broadcast_to(panel, (1, *batch, *panel.shape[-2:])), axis=-1)
+    lines, panels = first.shape[-2:]
+    return first.reshape(*first.shape[:-2], -1).take(np.arange(lines)[:, None] * panels + panel, axis=-1)
+
+
+def _shared(panels: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Panels (..., m, k) of points as (m, k), where a whole batch has the same."""
+    first: NDArray[np.intp] = panels[(0,) * (panels.ndim - 2)]
+    return first if np.array_equal(panels, np.broadcast_to(first, panels.shape)) else panels
+
+
+def _first(coefficients: Array) -> Array:
+    """Coefficients (..., n) as (n, ...)."""
+    return coefficients.transpose(-1, *range(coefficients.ndim - 1))
 
 
 def _horner(powers: Array, t: Array, order: int) -> Array:
-    """Values or derivatives (...) at t (...) of polynomials with coefficients (..., n)."""
-    count = powers.shape[-1]
-    value: Array = np.zeros(np.broadcast_shapes(powers.shape[:-1], t.shape), dtype=np.result_type(powers, t))
+    """Values or derivatives (...) at t (...) of polynomials with coefficients (n, ...)."""
+    count = len(powers)
+    value: Array = np.zeros(np.broadcast_shapes(powers.shape[1:], t.shape), dtype=np.result_type(powers, t))
     for k in range(count - 1, order - 1, -1):
-        value = value * t + perm(k, order) * powers[..., k]
+        value = value * t + (perm(k, order) * powers[k] if order else powers[k])
     return value
 
 
 def _clenshaw(series: Array, x: Array) -> Array:
-    """Values (...) at x (...) of Chebyshev series (..., n)."""
+    """Values (...) at x (...) of Chebyshev series (n, ...)."""
     two = 2.0 * x
     later: Array | float = 0.0
     now: Array | float = 0.0
-    for k in range(series.shape[-1] - 1, 0, -1):
-        later, now = now, series[..., k] + two * now - later
-    return series[..., 0] + x * now - later
+    for k in range(len(series) - 1, 0, -1):
+        later, now = now, series[k] + two * now - later
+    return series[0] + x * now - later
 
 
 def _integration() -> Reals:
@@ -324,5 +307,3 @@ def _integration() -> Reals:
 _NODE_PLACES = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
 _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODE_PLACES, NODES - 1))
 _INTEGRATED = _integration()
-_GUESS_PLACES = np.cos(np.pi * (np.arange(INVERSE_NODES) + 0.5) / INVERSE_NODES)
-_GUESS_SERIES = np.linalg.inv(chebyshev.chebvander(_GUESS_PLACES, INVERSE_NODES - 1))

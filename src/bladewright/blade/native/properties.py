@@ -13,7 +13,7 @@ from functools import partial
 
 import numpy as np
 
-from bladewright.numerics.elementary import Array, angle, length
+from bladewright.numerics.elementary import Array, angle, cross, length
 from bladewright.numerics.quadrature import panels
 from bladewright.nurbs.basis import Reals, basis, breaks
 from bladewright.nurbs.mass_properties import MassProperties
@@ -46,7 +46,7 @@ def side_moments(
     `near`, by default of the middle. Control points may be complex.
     """
     u, v, weight = _places(side)
-    point, normal = side.grid(u, v), np.cross(side.grid(u, v, 1, 0), side.grid(u, v, 0, 1))
+    point, normal = side.grid(u, v), cross(side.grid(u, v, 1, 0), side.grid(u, v, 0, 1))
     away = 0.0 if near is None else near - middle
     return np.einsum("uv,uvk->k", weight, _density(middle, count, revolved=revolved, away=away)(point, normal))
 
@@ -54,7 +54,7 @@ def side_moments(
 def area_vector(side: Surface) -> Array:
     """Integral (3,) of the normal over a side."""
     u, v, weight = _places(side)
-    return np.einsum("uv,uvk->k", weight, np.cross(side.grid(u, v, 1, 0), side.grid(u, v, 0, 1)))
+    return np.einsum("uv,uvk->k", weight, cross(side.grid(u, v, 1, 0), side.grid(u, v, 0, 1)))
 
 
 def moment_gradient(side: Surface, middle: float, *, revolved: bool, count: int = MOMENTS) -> Reals:
@@ -65,13 +65,13 @@ def moment_gradient(side: Surface, middle: float, *, revolved: bool, count: int 
     """
     u, v, weight = _places(side)
     point, along, across = (side.grid(u, v, *orders) for orders in ((0, 0), (1, 0), (0, 1)))
-    density, axes, normal = _density(middle, count, revolved=revolved), np.eye(3), np.cross(along, across)
+    density, axes, normal = _density(middle, count, revolved=revolved), np.eye(3), cross(along, across)
     by_normal = np.stack([density(point, np.broadcast_to(axis, point.shape)) for axis in axes], axis=-1)
     by_point = np.stack([np.imag(density(point + STEP * 1j * axis, normal)) / STEP for axis in axes], axis=-1)
     parts = (
         (by_point, 0, 0),
-        (np.cross(across[..., None, :], by_normal), 1, 0),
-        (np.cross(by_normal, along[..., None, :]), 0, 1),
+        (cross(across[..., None, :], by_normal), 1, 0),
+        (cross(by_normal, along[..., None, :]), 0, 1),
     )
     total: Reals = np.zeros((count, *side.control_points.shape))
     for part, in_u, in_v in parts:
@@ -198,7 +198,7 @@ def _end(end: TrimmedSurface) -> tuple[Array, Array]:
             end.surface.derivative(uv[:, 0], uv[:, 1], 0, 1),
         )
         tangent = along * slope[:, :1] + across * slope[:, 1:]
-        vector = vector + np.sum(weight[:, None] * np.cross(point, tangent), axis=0) / 2.0
+        vector = vector + np.sum(weight[:, None] * cross(point, tangent), axis=0) / 2.0
         size = size - np.sum(weight * _width(end.revolution, point) * length(along) * slope[:, 0])
     return size, vector
 

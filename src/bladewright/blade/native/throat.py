@@ -98,11 +98,13 @@ class _Row:
 
     def own(self, s: Array, v: Reals, ds: int = 0, dv: int = 0) -> Array:
         """Points, or derivatives by s and v (m, 3), of the outline at s, v (m,)."""
-        around = np.where(np.real(s) % 2.0 <= 1.0, 0.0, 1.0)
         s = s - 2.0 * np.floor(np.real(s) / 2.0)
-        lower = self.lower.derivative(np.where(around == 0.0, s, 0.5), v, ds, dv)
-        upper = self.upper.derivative(np.where(around == 1.0, 2.0 - s, 0.5), v, ds, dv)
-        return np.where(around[:, None] == 0.0, lower, (-1.0) ** ds * upper)
+        below = np.real(s) <= 1.0
+        lower = self.lower.derivative(s[below], v[below], ds, dv)
+        upper = self.upper.derivative(2.0 - s[~below], v[~below], ds, dv)
+        found = np.empty((len(s), *lower.shape[1:]), dtype=np.result_type(lower, upper))
+        found[below], found[~below] = lower, (-1.0) ** ds * upper
+        return found
 
     def neighbour(self, s: Array, v: Reals, ds: int = 0, dv: int = 0) -> Array:
         """The same of the next blade's outline."""
