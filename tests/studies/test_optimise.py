@@ -11,6 +11,7 @@ from bladewright.errors import StudyError
 from bladewright.files.examples import example_text
 from bladewright.studies.adjoint import adjoint_of
 from bladewright.studies.goals import Limit
+from bladewright.studies.manifest import read_manifest
 from bladewright.studies.optimality import Rows, optimality
 from bladewright.studies.optimise import Search
 from bladewright.studies.problem import Problem
@@ -130,6 +131,29 @@ def test_every_member_of_a_front_is_an_optimum_and_nsga2_finds_none_better(secti
         assert area > np.interp(turning, front.table[:, 1], front.table[:, 0]) - 1e-3
     again = bw.optimise(section, variables, aims, [THICK], method="slsqp", members=3, manifest=tmp_path / "a.jsonl")
     assert again.table == pytest.approx(front.table, rel=2e-6)  # rows count as held within 1e-6
+
+
+def test_a_search_that_is_interrupted_goes_on_at_its_last_iteration(section, tmp_path: Path) -> None:
+    variables, manifest = {"axial_chord": (20.0, 40.0), "thickness_*": THICKNESS}, tmp_path / "runs.jsonl"
+    chord = {"quantity": "axial_chord", "lower": 25.0}
+    seen = list[float]()
+
+    def stop(figures) -> None:
+        seen.append(figures["area"])
+        if len(seen) == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        bw.optimise(section, variables, "area", [chord], manifest=manifest, progress=stop)
+    assert len(list(read_manifest(manifest)[1])) == 2
+    found = bw.optimise(section, variables, "area", [chord], manifest=manifest, iterations=100)
+    assert found.passed
+    assert found.history[:2, 0].tolist() == seen
+    assert found.parameters["axial_chord"] == pytest.approx(25.0, abs=1e-5)
+    again = bw.optimise(section, variables, "area", [chord], manifest=manifest)
+    assert (again.parameters, again.figures, again.rounds) == (found.parameters, found.figures, 0)
+    with pytest.raises(StudyError, match="manifest of another study: it differs in variables"):
+        bw.optimise(section, {"axial_chord": (20.0, 41.0)}, "area", [chord], manifest=manifest)
 
 
 HANGS = "def hangs(section):\n    while True: pass\n"

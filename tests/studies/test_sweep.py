@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bladewright.errors import BladewrightError
+from bladewright.errors import BladewrightError, StudyError
 from bladewright.files.reading import read_design
 from bladewright.studies.manifest import read_manifest
 from bladewright.studies.sampling import SAMPLINGS, count, read_table
@@ -191,6 +191,19 @@ def test_a_sweep_killed_ten_times_loses_nothing(study_file):
     rng = np.random.default_rng(5)
     manifest = killed_and_continued(study_file.parent, list(rng.uniform(0.0, 0.1, 10)))
     assert_none_lost_or_doubled(manifest)
+
+
+def test_an_edit_of_a_function_is_noticed_where_a_sweep_goes_on(study_file, tmp_path):
+    def plan(source):
+        (study_file.parent / "figures.py").write_text(source)
+        return planned(read_study(study_file), quantities=["figures:size"])
+
+    plan("def size(section): return section.area\n").carried_out(tmp_path / "runs.jsonl", jobs=1)
+    same = plan("def size(section): return section.area\n").carried_out(tmp_path / "runs.jsonl", jobs=1)
+    assert len(same) == 8
+    edited = plan("def size(section): return 2.0 * section.area\n")
+    with pytest.raises(StudyError, match="the source of size was edited since the runs of"):
+        edited.carried_out(tmp_path / "runs.jsonl", jobs=1)
 
 
 FATAL = """

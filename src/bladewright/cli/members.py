@@ -1,6 +1,7 @@
-"""Single designs of a study: those of one run, with their CAD files."""
+"""What the commands of studies share: how they go on, and single designs with their CAD files."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,15 @@ from bladewright.errors import StudyError
 if TYPE_CHECKING:
     from bladewright.designs import Design
     from bladewright.studies.variables import Variable
+
+
+@contextmanager
+def resumable(manifest: Path) -> Iterator[None]:
+    """A context whose interrupts say how a study goes on."""
+    try:
+        yield
+    except KeyboardInterrupt as error:
+        raise KeyboardInterrupt(f"what has ended is in '{manifest}', and the same command goes on") from error
 
 
 def member_designs(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from bladewright.cli.build_files import SUFFIXES
-from bladewright.cli.members import member_designs, written_designs
+from bladewright.cli.members import member_designs, resumable, written_designs
 from bladewright.cli.options import Call, comma_separated, common
 from bladewright.cli.outcome import Outcome
 from bladewright.cli.progress import progress, status_line
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @click.command(short_help="The best design of a study, or its Pareto set.")
 @click.argument("path", type=click.Path(path_type=Path), metavar="STUDY")
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="Manifest of a Pareto set's runs.  [STUDY.jsonl]")
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Manifest of the runs.  [STUDY.jsonl]")
 @click.option("--member", type=click.IntRange(1), metavar="RUN", help="Write the design of this run of the manifest.")
 @click.option(
     "--as",
@@ -62,9 +62,9 @@ def optimise(
     """Search the best designs of STUDY, a file that says what is varied, what is to be small or large, and the limits.
 
     One objective gives the optimum, DESIGN-optimum.toml: by exact derivatives, and checked by the conditions of Karush,
-    Kuhn and Tucker. Several give a Pareto set: each run is a line of the manifest as soon as it has ended, and a search
-    that was stopped goes on where the same command is given again. --member 12 --as step writes run 12 of that manifest
-    as DESIGN-0012.toml and as verified CAD files.
+    Kuhn and Tucker. Several give a Pareto set. Each iteration or run is a line of the manifest as soon as it has ended,
+    and a search that was stopped goes on where the same command is given again. --member 12 --as step writes run 12 of
+    that manifest as DESIGN-0012.toml and as verified CAD files.
 
     The exit status is 1 where a search with derivatives has not ended at an optimum, or no design keeps all
     constraints.
@@ -82,27 +82,32 @@ def optimise(
         designs = member_designs(study.designs, study.variables, manifest, member)
         return written_designs(designs, f"{member:04d}", directory, formats, call)
     search = Search(study)
-    if search.single:
-        with status_line(call) as show:
-            found = search.optimum(lambda figures: show(f"{study.name}: {_line(search, figures)}"))
-        return _optimum(found, call, directory, formats, picture)
-    if formats:
+    if formats and not search.single:
         raise click.UsageError("--as writes one design: name it with --member, by its run in the Pareto set")
-    try:
+    with resumable(manifest):
+        if search.single:
+            with status_line(call) as show:
+                found = search.optimum(
+                    manifest, progress=lambda figures: show(f"{study.name}: {_line(search, figures)}")
+                )
+            return _optimum(found, call, manifest, directory, formats, picture)
         with progress(search.total, call, time_left=True) as bar:
             bar.set_description_str(study.name)
             front = search.pareto_set(manifest, jobs=jobs, scheduler=scheduler, progress=lambda _: bar.update(1))
-    except KeyboardInterrupt as error:
-        raise KeyboardInterrupt(f"what has ended is in '{manifest}', and the same command goes on") from error
     return _front(front, path, manifest, table_file, picture, parallel)
 
 
 def _optimum(
-    found: "Optimum", call: Call, directory: Path, formats: tuple[str, ...] | None, picture: Path | None
+    found: "Optimum",
+    call: Call,
+    manifest: Path,
+    directory: Path,
+    formats: tuple[str, ...] | None,
+    picture: Path | None,
 ) -> Outcome:
     """The optimum's design, files and picture."""
     files = written_designs(found.designs, "optimum", directory, formats, call)
-    written = [*files.data["written"]]
+    written = [str(manifest), *files.data["written"]]
     if picture is not None:
         from bladewright.views.optimum import draw_optimum
 
@@ -110,7 +115,7 @@ def _optimum(
         written.append(str(picture))
     texts = [str(found), *([files.text] if formats else []), *(f"wrote {each}" for each in written)]
     return Outcome(
-        data={**found.to_dict(), "cad": files.data["cad"], "written": written},
+        data={**found.to_dict(), "cad": files.data["cad"], "manifest": str(manifest), "written": written},
         text="\n".join(texts),
         failures=(*(f"{found.name}: {each}" for each in found.failures), *files.failures),
     )

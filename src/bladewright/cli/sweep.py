@@ -10,7 +10,7 @@ import click
 
 from bladewright.cli.build_files import SUFFIXES
 from bladewright.cli.directory import removing_partial_files
-from bladewright.cli.members import member_designs, written_designs
+from bladewright.cli.members import member_designs, resumable, written_designs
 from bladewright.cli.options import Call, comma_separated, common
 from bladewright.cli.outcome import Outcome
 from bladewright.cli.progress import progress
@@ -92,10 +92,8 @@ def sweep(
         designs = member_designs(plan.experiment.designs, plan.experiment.variables, manifest, member)
         return written_designs(designs, f"{member:04d}", directory or Path(), formats, call)
     with _writing(table_file, *pictures.values()):
-        try:
+        with resumable(manifest):
             runs = _carried_out(plan, manifest, call, jobs=jobs, scheduler=scheduler, retry=retry)
-        except KeyboardInterrupt as error:
-            raise KeyboardInterrupt(f"what has ended is in '{manifest}', and the same command goes on") from error
         if table_file is not None:
             runs.to_csv(table_file)
         drawn = _drawn(runs, pictures)

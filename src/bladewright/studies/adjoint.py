@@ -8,7 +8,7 @@ from typing import Any, final
 
 from bladewright.derivatives.net_jacobian import Bars
 from bladewright.errors import StudyError
-from bladewright.studies.quantities import BuiltDesign, Quantity, UserFunction, imported
+from bladewright.studies.quantities import BuiltDesign, Quantity, UserFunction, digest, imported
 
 
 @final
@@ -26,6 +26,10 @@ class Adjoint(Quantity):
 
     def of(self, built: Mapping[str, BuiltDesign]) -> float:
         return self.solved(built)[0]
+
+    @property
+    def source(self) -> str:
+        return digest(self.function)
 
     def solved(self, built: Mapping[str, BuiltDesign]) -> tuple[float, Bars]:
         """The scalar and its derivatives by points; StudyError where the function gives something else."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -133,6 +133,29 @@ class Goals:
     def excesses(self, figures: Mapping[str, float]) -> Reals:
         """(m,) by how much figures lie outside their limits, in sizes."""
         return np.array([limit.excess(figures) for limit in self.limits])
+
+
+def entry_of(kind: type[Any], given: Any) -> Any:
+    """An objective or a constraint as Python gives it."""
+    if isinstance(given, kind):
+        return given
+    if not isinstance(given, Mapping):
+        return kind(quantity=given)
+    try:
+        return kind(**given)
+    except TypeError as error:
+        known = ", ".join(each.name for each in fields(kind))
+        raise StudyError(
+            f"{kind.__name__.lower()} {dict(given)!r} is not understood ({error}); keys are {known}"
+        ) from error
+
+
+def entry_keys(entry: Objective | Constraint) -> dict[str, Any]:
+    """An entry as a manifest has it, where functions are known by their names."""
+    asked = entry.quantity
+    if callable(asked):
+        asked = f"{asked.__module__}:{getattr(asked, '__qualname__', type(asked).__qualname__)}"
+    return {**asdict(replace(entry, quantity=None)), "quantity": asked}
 
 
 def goals_of(search: SearchOptions, names: Mapping[int, Sequence[str]], figures: Mapping[str, float]) -> Goals:

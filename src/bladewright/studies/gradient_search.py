@@ -115,8 +115,8 @@ class Found:
     """why the design was refused at which a round had to end; empty where none was"""
 
 
-Watch = Callable[[Mapping[str, float]], object]
-"""Called with the figures of each iteration."""
+Watch = Callable[[Reals, Mapping[str, float]], object]
+"""Called with the vector and the figures of each iteration."""
 
 
 def least(
@@ -128,22 +128,21 @@ def least(
     method: str = "slsqp",
     tolerance: float = 1e-6,
     iterations: int = 200,
-    watch: Watch = lambda _: None,
+    watch: Watch = lambda *_: None,
 ) -> Found:
     """Search the least of an aim from a vector, until no condition of an optimum is missed by more than `tolerance`.
 
     Raises DesignError where the first design is impossible, and DerivativeError where a figure has no derivative.
     """
     program, spent, evaluations, refusal = Program(problem.renewed(x), aim, limits), 0, 0, ""
-    found = program.optimality(x)
-    for rounds in range(1, ROUNDS + 1):  # noqa: B007 - the last one is reported
+    found, rounds, moved = program.optimality(x), 0, True
+    while found.worst > tolerance and moved and rounds < ROUNDS:
+        rounds += 1
         end, used = _round(program, x, method, iterations, tolerance, watch)
         spent, evaluations = spent + used, evaluations + program.evaluations
         refusal, moved = program.refusal, not np.array_equal(end, x)
         x, program = end, program.renewed(end)
         found = program.optimality(x)
-        if found.worst <= tolerance or not moved:
-            break
     return Found(
         x=x,
         figures=program.problem.figures(x),
@@ -170,7 +169,7 @@ def _round(
             raise _EndedError
         if not np.array_equal(accepted[-1], x):
             accepted.append(x.copy())
-            watch(program.problem.figures(x))
+            watch(x, program.problem.figures(x))
             if program.optimality(x).worst <= WITHIN * tolerance:
                 raise _EndedError
         return program.slopes(x)

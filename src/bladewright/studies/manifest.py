@@ -13,8 +13,8 @@ from bladewright.atomic_write import atomic_write
 from bladewright.errors import FileError, StudyError
 from bladewright.studies.run import Record
 
-NOT_COMPARED = frozenset({"bladewright", "study", "directory"})
-"""Entries of the first line that may differ where a study goes on: versions and places."""
+NOT_COMPARED = frozenset({"bladewright", "study", "directory", "functions"})
+"""Entries of the first line that may differ where a study goes on: versions and places. Functions are told apart."""
 
 LONGEST_HEADER = 10_000_000
 """[bytes] Size above which a file without any line end is no manifest that was killed at its first line."""
@@ -39,7 +39,7 @@ class Manifest:
         self.done: set[int] = set()
         self._descriptor = self._opened()
         try:
-            self._check()
+            self._check(mends=retry)
             if retry:
                 self._drop_failed()
             self._cut()
@@ -94,8 +94,11 @@ class Manifest:
                 ) from error
         return descriptor
 
-    def _check(self) -> None:
-        """Read what is there, and refuse the manifest of another study."""
+    def _check(self, *, mends: bool) -> None:
+        """Read what is there, and refuse the manifest of another study, or of functions that were edited.
+
+        Edits are allowed that are meant to mend what has failed.
+        """
         lines = _lines(self.path)
         before = next(lines, None)
         if before is None:
@@ -108,11 +111,21 @@ class Manifest:
                 f"'{self.path}' is the manifest of another study: {other}; name another manifest with -o, or move this "
                 "one away"
             )
+        sources = self.header.get("functions", {})
+        known = before["study"].get("functions", {})
+        edited = [name for name, source in sources.items() if known.get(name, source) != source]
+        if edited and not mends:
+            raise StudyError(
+                f"the source of {', '.join(edited)} was edited since the runs of '{self.path}', which may not agree "
+                "with new ones: name another manifest with -o, which repeats them all, or take the edit back; a sweep "
+                "goes on with --retry where the edit only mends what has failed"
+            )
         self.done = {line["run"] for line in lines if "run" in line}
 
     def _drop_failed(self) -> None:
         """Leave out the runs that have failed."""
         kept = [line for line in _texts(self.path) if json.loads(line).get("verdict") != "failed"]
+        kept[:1] = [f"{self._first_line}\n".encode()] if kept else []
         with atomic_write(self.path) as unfinished:
             Path(unfinished).write_bytes(b"".join(kept))
         self.close()
@@ -124,7 +137,11 @@ class Manifest:
         size = sum(len(line) for line in _texts(self.path))
         os.ftruncate(self._descriptor, size)
         if size == 0:
-            self._write(json.dumps({"study": self.header}, allow_nan=False, default=str))
+            self._write(self._first_line)
+
+    @property
+    def _first_line(self) -> str:
+        return json.dumps({"study": self.header}, allow_nan=False, default=str)
 
 
 def read_manifest(path: str | os.PathLike[str]) -> tuple[dict[str, Any], Iterator[Record]]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import ExitStack
-from dataclasses import asdict, fields, replace
+from contextlib import ExitStack, contextmanager
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, cast
 
@@ -14,11 +14,10 @@ import numpy as np
 
 from bladewright.designs import Design
 from bladewright.errors import StudyError
-from bladewright.files.writing import text_of
 from bladewright.nurbs.basis import Reals
 from bladewright.studies.adjoint import adjoint_of
 from bladewright.studies.front import Tracing, front
-from bladewright.studies.goals import Constraint, Method, Objective, SearchOptions, goals_of
+from bladewright.studies.goals import Constraint, Method, Objective, SearchOptions, entry_keys, entry_of, goals_of
 from bladewright.studies.gradient_search import least
 from bladewright.studies.manifest import Manifest, read_manifest
 from bladewright.studies.nsga2 import Asked as AskedRuns
@@ -32,7 +31,7 @@ from bladewright.studies.quantities import Quantity
 from bladewright.studies.run import Experiment, Record, built_designs, measured, within
 from bladewright.studies.runs import Runs
 from bladewright.studies.study import Study
-from bladewright.studies.sweep import Given, given_keys, range_of
+from bladewright.studies.sweep import Given, header_of, range_of
 from bladewright.studies.variables import resolved
 from bladewright.studies.workers import Workers, workers
 
@@ -77,8 +76,8 @@ def optimise(
     `method` "slsqp" and "trust-constr" take exact derivatives at held knots: one objective gives an `Optimum`, two give
     a front of so many `members`, each of which meets the conditions of an optimum within `tolerance`. "nsga2" needs no
     derivatives and takes any number of objectives, in `generations` of a `population`, in `jobs` processes. By default
-    it is slsqp for one objective and nsga2 for several. With a `manifest` every run is kept, and a search that was
-    stopped goes on there. `progress` is called with the figures of each iteration or run.
+    it is slsqp for one objective and nsga2 for several. With a `manifest` every run or iteration is kept, and a
+    search that was stopped goes on there. `progress` is called with the figures of each iteration or run.
 
     Raises StudyError for what cannot be searched, and DesignError where the search cannot begin at the design.
     """
@@ -88,8 +87,8 @@ def optimise(
     if isinstance(constraints, Mapping):
         constraints = [{"quantity": name, "lower": low, "upper": high} for name, (low, high) in constraints.items()]
     options = SearchOptions(
-        objectives=tuple(_entry(Objective, each) for each in asked),
-        constraints=tuple(_entry(Constraint, each) for each in constraints),
+        objectives=tuple(entry_of(Objective, each) for each in asked),
+        constraints=tuple(entry_of(Constraint, each) for each in constraints),
         method=method,
         tolerance=tolerance,
         iterations=iterations,
@@ -175,32 +174,36 @@ class Search:
     ) -> Optimum | ParetoSet:
         """Its result, as `optimum` or `pareto_set` gives it."""
         if self.single:
-            return self.optimum(progress)
+            return self.optimum(manifest, progress=progress)
         return self.pareto_set(manifest, jobs=jobs, scheduler=scheduler, progress=progress)
 
-    def optimum(self, progress: Watch | None = None) -> Optimum:
-        """The best design of one aim, by exact derivatives."""
-        watch, began = progress or _nothing, time.perf_counter()
+    def optimum(self, manifest: str | os.PathLike[str] | None = None, *, progress: Watch | None = None) -> Optimum:
+        """The best design of one aim, by exact derivatives.
+
+        Every iteration is added to the manifest, and the search goes on at the last one that is there.
+        """
+        began = time.perf_counter()
         problem, start = self._problem()
-        aim, history = self.goals.aims[0], list[tuple[float, float]]()
+        with self._keeping(manifest, progress) as (kept, keep):
 
-        def note(figures: Mapping[str, float]) -> None:
-            violation = float(np.max(self.goals.excesses(figures), initial=0.0))
-            history.append((figures[aim.figure], violation))
-            watch(figures)
+            def note(x: Reals, figures: Mapping[str, float]) -> None:
+                parameters = problem.parameters(x)
+                if not kept or kept[len(kept)].parameters != parameters:
+                    keep(Record(run=len(kept) + 1, parameters=parameters, figures=dict(figures), verdict="built"))
 
-        note(self.figures)
-
-        found = least(
-            problem,
-            start,
-            aim,
-            self.goals.limits,
-            method=self.method,
-            tolerance=self.options.tolerance,
-            iterations=self.options.iterations,
-            watch=note,
-        )
+            if not kept:
+                note(start, self.figures)
+            found = least(
+                problem,
+                problem.vector(kept[len(kept)].parameters),
+                self.goals.aims[0],
+                self.goals.limits,
+                method=self.method,
+                tolerance=self.options.tolerance,
+                iterations=self.options.iterations,
+                watch=note,
+            )
+            note(found.x, found.figures)
         return Optimum(
             name=self.study.name,
             experiment=self.experiment,
@@ -212,7 +215,7 @@ class Search:
             start_figures=self.figures,
             optimality=found.optimality,
             tolerance=self.options.tolerance,
-            history=np.array(history).reshape(-1, 2),
+            history=np.array([self._state(record) for record in kept.values()]),
             rounds=found.rounds,
             evaluations=found.evaluations,
             refusal=found.refusal,
@@ -228,21 +231,9 @@ class Search:
         progress: Watch | None = None,
     ) -> ParetoSet:
         """The Pareto set; what the manifest has is taken from there, and every run is added to it."""
-        watch = progress or _nothing
         optima: dict[int, Optimality] = {}
-        kept: dict[int, Record] = {}
         with ExitStack() as stack:
-            opened = None
-            if manifest is not None:
-                opened = stack.enter_context(Manifest(manifest, self._header()))
-                kept = {record.run: record for record in read_manifest(manifest)[1]}
-
-            def keep(record: Record) -> None:
-                if opened is not None and record.run not in kept:
-                    opened.append(record)
-                kept[record.run] = record
-                watch(record.figures)
-
+            kept, keep = stack.enter_context(self._keeping(manifest, progress))
             if self.method == "nsga2":
                 self._evolve(stack.enter_context(workers(self.experiment, jobs=jobs, scheduler=scheduler)), kept, keep)
             else:
@@ -257,6 +248,31 @@ class Search:
             optimality=optima,
             tolerance=self.options.tolerance,
         )
+
+    @contextmanager
+    def _keeping(
+        self, manifest: str | os.PathLike[str] | None, progress: Watch | None
+    ) -> Iterator[tuple[dict[int, Record], Callable[[Record], None]]]:
+        """The records by number, to begin with those of the manifest, and what adds one."""
+        watch, kept = progress or _nothing, dict[int, Record]()
+        with ExitStack() as stack:
+            opened = None
+            if manifest is not None:
+                opened = stack.enter_context(Manifest(manifest, self._header()))
+                kept |= {record.run: record for record in read_manifest(manifest)[1]}
+
+            def keep(record: Record) -> None:
+                if opened is not None and record.run not in kept:
+                    opened.append(record)
+                kept[record.run] = record
+                watch(record.figures)
+
+            yield kept, keep
+
+    def _state(self, record: Record) -> tuple[float, float]:
+        """The aim's figure of an iteration, and the largest violation of a limit, in its size."""
+        figures = cast("Mapping[str, float]", record.figures)
+        return figures[self.goals.aims[0].figure], float(np.max(self.goals.excesses(figures), initial=0.0))
 
     def _quantities(self, entry: Objective | Constraint) -> list[Quantity]:
         found = self.study.quantities(entry.quantity)
@@ -345,50 +361,20 @@ class Search:
 
     def _header(self) -> dict[str, Any]:
         """The first line of the manifest: what determines the runs."""
-        from bladewright import __version__
-
         options = asdict(self.options)
-        del options["generations"]  # a search goes on with more of them
+        for more in ("generations", "iterations"):  # a search goes on with more of them
+            del options[more]
         return {
-            "kind": "optimise",
-            "bladewright": __version__,
-            "name": self.study.name,
-            "folder": str(self.study.folder.absolute()),
-            "designs": {name: text_of(design) for name, design in self.study.designs.items()},
-            "variables": {name: given_keys(each) for name, each in self.study.ranges.items()},
-            "polars": {name: given_keys(each) for name, each in self.study.polars.items()},
+            **header_of("optimise", self.study, self.experiment.quantities),
             "optimise": {
                 **options,
-                "objectives": [_named(each) for each in self.options.objectives],
-                "constraints": [_named(each) for each in self.options.constraints],
+                "objectives": [entry_keys(each) for each in self.options.objectives],
+                "constraints": [entry_keys(each) for each in self.options.constraints],
                 "method": self.method,
             },
             **({"pymoo": pymoo_version()} if self.method == "nsga2" else {}),
         }
 
 
-def _named(entry: Objective | Constraint) -> dict[str, Any]:
-    """An entry as a manifest has it, where functions are known by their names."""
-    asked = entry.quantity
-    if callable(asked):
-        asked = f"{asked.__module__}:{getattr(asked, '__qualname__', type(asked).__qualname__)}"
-    return {**asdict(replace(entry, quantity=None)), "quantity": asked}
-
-
 def _nothing(_: Mapping[str, Any]) -> None:
     """What is done with figures that nobody asks for."""
-
-
-def _entry(kind: type[Any], given: Any) -> Any:
-    """An objective or a constraint as Python gives it."""
-    if isinstance(given, kind):
-        return given
-    if not isinstance(given, Mapping):
-        return kind(quantity=given)
-    try:
-        return kind(**given)
-    except TypeError as error:
-        known = ", ".join(each.name for each in fields(kind))
-        raise StudyError(
-            f"{kind.__name__.lower()} {dict(given)!r} is not understood ({error}); keys are {known}"
-        ) from error

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import importlib.util
+import inspect
 import math
 import sys
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property
+from hashlib import sha256
 from pathlib import Path
 from types import ModuleType
 from typing import Any, ClassVar, final
@@ -98,6 +100,11 @@ class Quantity(ABC):
         """Unit of the value, empty where none is known."""
         return ""
 
+    @property
+    def source(self) -> str:
+        """Digest of the user's code that finds it, by which an edit is noticed; empty where there is none."""
+        return ""
+
 
 @dataclass(frozen=True, kw_only=True)
 class NamedFigure(Quantity):
@@ -155,10 +162,18 @@ class UserFunction(Quantity):
     """where modules are looked for before Python's own path"""
 
     def of(self, built: Mapping[str, BuiltDesign]) -> Any:
-        function = self.function if callable(self.function) else imported(self.function, self.folder)
+        function = self._function
         if self.design is not None:
             return function(built[self.design].built)
         return function({name: each.built for name, each in built.items()})
+
+    @property
+    def source(self) -> str:
+        return digest(self._function)
+
+    @property
+    def _function(self) -> Callable[..., Any]:
+        return self.function if callable(self.function) else imported(self.function, self.folder)
 
 
 def quantities_of(asked: object, designs: Mapping[str, Design], folder: str | Path = ".") -> list[Quantity]:
@@ -208,6 +223,17 @@ def imported(function: str, folder: str) -> Callable[..., Any]:
     module_name = function.partition(":")[0]
     file = Path(folder) / (module_name if module_name.endswith(".py") else f"{module_name}.py")
     return _imported(function, file, file.stat().st_mtime_ns if file.is_file() else None)
+
+
+def digest(function: Callable[..., Any]) -> str:
+    """A digest of the file that defines a function, or of its own lines in a script; empty where they are unknown."""
+    try:
+        file = inspect.getsourcefile(function)
+        alone = file is None or function.__module__ == "__main__"
+        text = inspect.getsource(function).encode() if alone else Path(str(file)).read_bytes()
+    except (OSError, TypeError, AttributeError):
+        return ""
+    return sha256(text).hexdigest()[:16]
 
 
 @cache

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import json
 import math
 import signal
@@ -176,10 +177,14 @@ def _written(experiment: Experiment, run: int, built: Mapping[str, BuiltDesign])
 
 @contextmanager
 def within(seconds: float | None) -> Iterator[None]:
-    """A context that raises TimeoutError after so many seconds, where this thread can be interrupted."""
+    """A context that raises TimeoutError after so many seconds, in a thread as soon as it is back in Python."""
     alarm: int | None = getattr(signal, "SIGALRM", None)  # Windows has none
-    if seconds is None or alarm is None or threading.current_thread() is not threading.main_thread():
+    if seconds is None:
         yield
+        return
+    if alarm is None or threading.current_thread() is not threading.main_thread():
+        with _within_thread(seconds):
+            yield
         return
 
     def stop(*_: object) -> None:
@@ -192,6 +197,20 @@ def within(seconds: float | None) -> Iterator[None]:
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(alarm, before)
+
+
+@contextmanager
+def _within_thread(seconds: float) -> Iterator[None]:
+    """The same in a thread that no signal reaches, such as that of a cluster's worker."""
+    raised, thread = ctypes.pythonapi.PyThreadState_SetAsyncExc, ctypes.c_ulong(threading.get_ident())
+    timer = threading.Timer(seconds, raised, (thread, ctypes.py_object(TimeoutError)))
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
+        timer.join()
+        raised(thread, None)
 
 
 def _one_line(error: BaseException) -> str:

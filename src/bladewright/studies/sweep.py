@@ -14,6 +14,7 @@ from bladewright.errors import StudyError
 from bladewright.files.writing import text_of
 from bladewright.studies.manifest import Manifest, read_manifest
 from bladewright.studies.operating_points import OperatingPoint
+from bladewright.studies.quantities import Quantity
 from bladewright.studies.run import Experiment, Record
 from bladewright.studies.runs import Runs
 from bladewright.studies.sampling import SAMPLINGS, count, read_table
@@ -162,24 +163,16 @@ def planned(
         study=study,
         experiment=experiment,
         total=count(options.sampling, variables, options.samples),
-        header=_header(study, asked),
+        header=_header(study, asked, found),
     )
 
 
-def _header(study: Study, asked: Sequence[str | Callable[..., Any]]) -> dict[str, Any]:
+def _header(study: Study, asked: Sequence[str | Callable[..., Any]], found: Sequence[Quantity]) -> dict[str, Any]:
     """What determines the runs of a sweep."""
-    from bladewright import __version__
-
     random = study.sweep.sampling in {"latin-hypercube", "sobol"}
     names = [each if isinstance(each, str) else f"{each.__module__}:{each.__qualname__}" for each in asked]
     return {
-        "kind": "sweep",
-        "bladewright": __version__,
-        "name": study.name,
-        "folder": str(study.folder.absolute()),
-        "designs": {name: text_of(design) for name, design in study.designs.items()},
-        "variables": {name: given_keys(each) for name, each in study.ranges.items()},
-        "polars": {name: given_keys(each) for name, each in study.polars.items()},
+        **header_of("sweep", study, found),
         "sweep": {
             "sampling": study.sweep.sampling,
             **({"samples": study.sweep.samples, "seed": study.sweep.seed} if random else {}),
@@ -187,6 +180,22 @@ def _header(study: Study, asked: Sequence[str | Callable[..., Any]]) -> dict[str
             "files": list(study.sweep.files),
             "time_limit": study.sweep.time_limit,
         },
+    }
+
+
+def header_of(kind: str, study: Study, quantities: Sequence[Quantity]) -> dict[str, Any]:
+    """What the first line of a manifest says of any study, of one `kind`."""
+    from bladewright import __version__
+
+    return {
+        "kind": kind,
+        "bladewright": __version__,
+        "name": study.name,
+        "folder": str(study.folder.absolute()),
+        "designs": {name: text_of(design) for name, design in study.designs.items()},
+        "variables": {name: given_keys(each) for name, each in study.ranges.items()},
+        "polars": {name: given_keys(each) for name, each in study.polars.items()},
+        "functions": {each.name: each.source for each in quantities if each.source},
     }
 
 

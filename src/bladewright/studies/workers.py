@@ -215,7 +215,7 @@ class Cluster(_Pool):
         except CancelledError as error:
             raise StudyError("the cluster has gone: start it again, and the same command goes on") from error
         except Exception as error:  # noqa: BLE001 - a run that stops its workers has failed, the others go on
-            return _stopped(run, None, f"{type(error).__name__}: {error}")
+            return _stopped(run, self.experiment.time_limit, f"{type(error).__name__}: {error}")
 
 
 @lru_cache(maxsize=1)
@@ -228,12 +228,25 @@ def _carried_out(sent: bytes, run: int, parameters: Mapping[str, Any]) -> Record
     """Carry out a run in a worker."""
     experiment = _experiment(sent)
     limit = experiment.time_limit
-    if limit is not None and threading.current_thread() is threading.main_thread():
+    if limit is not None and _alone_in_process():
         faulthandler.dump_traceback_later(limit + GRACE, exit=True, file=_nowhere())
     try:
         return record_of(experiment, run, parameters)
     finally:
         faulthandler.cancel_dump_traceback_later()
+
+
+def _alone_in_process() -> bool:
+    """Whether a run has this process to itself, and another process would start it again where it is stopped."""
+    if threading.current_thread() is threading.main_thread():
+        return True
+    try:
+        from distributed import get_worker
+
+        worker = get_worker()
+    except (ImportError, ValueError):
+        return False
+    return worker.nanny is not None and worker.state.nthreads == 1
 
 
 def _ready() -> int:
@@ -275,6 +288,6 @@ def _one_thread_each() -> Iterator[None]:
 
 def _stopped(run: Run, limit: float | None, why: str = "") -> Record:
     """The record of a run whose process has stopped."""
-    words = "the process that carried it out has stopped: killed, out of memory, or stopped by the system"
+    words = why or "the process that carried it out has stopped: killed, out of memory, or stopped by the system"
     words += f", or it ignored its limit of {limit:g} s" if limit else ""
-    return Record(run=run[0], parameters=dict(run[1]), verdict="failed", reason=why or words)
+    return Record(run=run[0], parameters=dict(run[1]), verdict="failed", reason=words)
