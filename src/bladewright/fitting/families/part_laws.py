@@ -10,6 +10,7 @@ import numpy as np
 
 from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.designs import Law
+from bladewright.errors import DesignError
 from bladewright.fitting.initial_guess.laws import plain_law
 from bladewright.fitting.model_selection.reshaping import (
     COMPARED_PLACES,
@@ -235,14 +236,25 @@ def _structure(design: Any) -> PartStructure:
 
 def _reshaped(design: Any, structure: PartStructure) -> Any:
     changes = {law.name: law.resized_value(design, law.counts(structure)) for law in _laws(design)}
+    found = design.changed(changes)
     for name in [name for name in changes if name.endswith("_heights")]:
         # the side leaves its corner as fast where its first control point is as much nearer as the knots are
         ratio = (len(law_at(design, name)) + 1.0) / (len(changes[name]) + 1.0)
         for tangent in (name.replace("heights", f"tangent_{way}") for way in ("in", "out")):
-            law = changes.get(tangent, law_at(design, tangent))
+            law = law_at(found, tangent)
             if law is not None and stations_of(law) is None:
-                changes[tangent] = plain_law(ratio * np.array(law_points(law)))
-    return design.changed(changes)
+                scaled = found.changed({tangent: plain_law(ratio * np.array(law_points(law)))})
+                found = scaled if ratio >= 1.0 or _has_shape(scaled) else found
+    return found
+
+
+def _has_shape(design: Any) -> bool:
+    """Whether the sides leave the edges; with short tangents they turn back."""
+    try:
+        design.section.outline(Span(COMPARED_PLACES[::10]))
+    except DesignError:
+        return False
+    return True
 
 
 def _richest(design: Any) -> PartStructure:

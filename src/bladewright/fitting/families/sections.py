@@ -165,7 +165,7 @@ def _through_points(
         found = best if found is None or _worst_neighbourhood(best) < _worst_neighbourhood(found) else found
         if not _is_far(found, target, OUTLINE_DEVIATION):
             break
-    return (None, "") if found is None else determined(some, found)
+    return determined(some, found) if found is not None and target.open else (found, "")
 
 
 def _outlined(task: Task, kind: FitFamily, start: Match, count: int, header: DesignHeader) -> Match | None:
