@@ -9,12 +9,15 @@ import pytest
 
 import bladewright as bw
 from bladewright.derivatives.complex_step import STEP
-from bladewright.errors import FileError, StudyError
+from bladewright.errors import DesignError, FileError, StudyError
 from bladewright.files.examples import example_text
+from bladewright.section.section import Section
 from bladewright.studies.manifest import Manifest, notes, read_manifest
+from bladewright.studies.operating_points import polar_figures
 from bladewright.studies.quantities import BuiltDesign, quantities_of
-from bladewright.studies.run import Experiment, Record, record_of
+from bladewright.studies.run import Experiment, Record, built_designs, record_of
 from bladewright.studies.study import read_study
+from machines import segmented
 
 HERE = {"stagger": -30.0, "thickness_upper*": 1.0}
 
@@ -169,6 +172,25 @@ def test_polars_are_quantities_at_operating_points(study_file: Path) -> None:
     assert list(record.figures.values()) == pytest.approx(expected)
     with pytest.raises(StudyError, match="did you mean 'cd'"):
         study.quantities("cruise.cpd")
+
+
+def test_a_section_is_left_at_its_exact_outline_where_polars_alone_are_asked() -> None:
+    design = segmented.airfoil_of(segmented.REDUCED).changed("section.morph", bw.Morph(trailing_edge=-15.0))
+    designs = {"airfoil": design}
+    lift = polar_figures("cruise.cl", {"cruise": bw.OperatingPoint(reynolds=1e6, alpha=2.0)}, designs)
+    alone = Experiment(designs=designs, variables=(), quantities=tuple(lift or ()))
+    assert built_designs(alone, {})["airfoil"].built is None
+    assert np.array_equal(
+        built_designs(alone, {})["airfoil"].outline.points(np.ones(1)), design.exact().points(np.ones(1))
+    )
+    for more in ({"quantities": (*alone.quantities, *quantities_of("chord", designs))}, {"files": (".step",)}):
+        assert isinstance(built_designs(replace(alone, **more), {})["airfoil"].built, Section)
+    skin = bw.Skin(inner=0.001, outer=0.001, ordinates=(0.05,))
+    beyond = design.changed("section.upper.leading_edge.skin", skin)
+    with pytest.raises(DesignError) as refusal:
+        beyond.build()
+    record = record_of(replace(alone, designs={"airfoil": beyond}), 1, {})
+    assert (record.verdict, record.reason) == ("refused", " ".join(str(refusal.value).split()))
 
 
 def test_a_solver_that_is_missing_is_said_in_the_record(study_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
