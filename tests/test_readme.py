@@ -235,6 +235,8 @@ def test_the_commands_of_a_page_run_one_after_another(path: Path, place: Path) -
     skip_without_xfoil(path)
     if path.stem == "match":
         _start(place)
+    for text in filter(is_whole, blocks(path, "toml")):
+        (place / f"{tomllib.loads(text)['name']}.toml").write_text(text)
     for line in commands(path):
         for name, make in INPUTS.items():
             if name in line and not (place / name).exists():

@@ -144,3 +144,17 @@ def test_a_batch_of_imaginary_steps_is_the_single_steps_one_by_one():
         single = np.stack(exact_unified_blade(IMPELLER.changed(path, values[path] + 1e-30j)).sections(v).points(S))
         scale = np.max(np.abs(np.imag(single)))
         assert np.imag(batch[:, i]) == pytest.approx(np.imag(single), abs=1e-13 * scale)
+
+
+def test_stream_lines_of_many_panels_are_those_of_few_and_a_batch_is_each_of_its_points():
+    lines = exact_unified_blade(FAN.changed({"tip_clearance": 0.01})).sections(np.array([0.2, 0.9])).lines
+    assert len(lines.panels) > 5
+    u = np.random.default_rng(3).uniform(0.0, 1.0, (4, 2, 7))
+    for together, each in (
+        (lines.abscissa(u), lines.abscissa),
+        (lines.position(u, 1), lambda at: lines.position(at, 1)),
+    ):
+        assert np.array_equal(together, np.stack([each(at) for at in u]))
+    assert lines.u_at(lines.abscissa(u)) == pytest.approx(u, abs=1e-14)
+    step = 1e-30j * np.ones(u.shape[1:])
+    assert np.imag(lines.u_at(lines.abscissa(u[0] + step))) == pytest.approx(np.imag(step), rel=1e-12)

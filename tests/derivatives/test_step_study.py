@@ -97,7 +97,7 @@ def test_every_parameter_of_a_section_has_the_derivative_that_differences_give()
 @pytest.mark.parametrize("name", UNIFIED)
 def test_differences_are_a_v_above_the_flat_floor_of_the_complex_step(name):
     for each in swept(name, "surface"):
-        if each.note:
+        if each.note or each.path.startswith(BESIDE):
             continue
         assert not each.failure
         small = each.imaginary < 1e-9

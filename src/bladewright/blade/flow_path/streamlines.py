@@ -263,7 +263,9 @@ def _rows_of(coefficients: Array, panel: Panel) -> Array:
         return first[..., panel, None]
     if panel.ndim > 2:
         batch = np.broadcast_shapes(first.shape[1:-2], panel.shape[:-2])
-        each = np.broadcast_to(first, (len(first), *batch, *first.shape[-2:]))
+        count, *own, lines, panels = first.shape
+        whole = first.reshape(count, *(1,) * (len(batch) - len(own)), *own, lines, panels)
+        each = np.broadcast_to(whole, (count, *batch, lines, panels))
         return np.take_along_axis(each, np.broadcast_to(panel, (1, *batch, *panel.shape[-2:])), axis=-1)
     lines, panels = first.shape[-2:]
     return first.reshape(*first.shape[:-2], -1).take(np.arange(lines)[:, None] * panels + panel, axis=-1)
