@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footpoints
+from bladewright.fitting.models.blunt_edges import closed_sides
 from bladewright.nurbs.closest import closest_on_curve, closest_on_surface
 from machines import example
+from machines.sections import EXAMPLES
 
 
 @cache
@@ -116,3 +118,15 @@ def test_past_an_end_the_miss_points_away_from_the_blade():
         assert np.all(np.sum(on.miss * on.beyond, axis=-1) > 0.0)
     within = nearest_footpoints(side(u, np.full(5, 0.5)), sides("compressor-stator"))
     assert not np.any(within.beyond)
+
+
+@pytest.mark.parametrize("name", ["camber-angle-blunt", "double-circular-arc-sharp"])
+def test_a_point_ahead_of_a_corner_is_as_high_as_it_is_far(name):
+    on = closed_sides(EXAMPLES[name].design.build())
+    # along the sides ahead of their last corner, so far from the sides' own normals
+    corner = 0.98 if name.endswith("blunt") else 1.0
+    ends, before = (np.concatenate([side(np.array([at])) for side in on]) for at in (corner, corner - 0.03))
+    ahead = ends + (ends - before)
+    found = nearest_footpoints(ahead, on)
+    np.testing.assert_allclose(found.heights, found.distances, rtol=1e-9)
+    np.testing.assert_allclose(found.distances, np.sqrt(np.sum((ahead - ends) ** 2, axis=-1)), rtol=0.01)

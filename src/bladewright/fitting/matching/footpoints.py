@@ -1,7 +1,7 @@
 """Footpoints: the nearest places of a cloud on the two sides of a blade or section."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,9 @@ Side = Curve | Surface
 DEEP_SHARE, DEEP_EXTENT = 0.25, 1e-5
 """a point inside the blade is projected onto the other side too where it lies deeper than this share of the thickness
 there (`DEEP_SHARE`), and deeper than this share of the cloud's extent (`DEEP_EXTENT`), which keeps noise out."""
+FACING = 0.999
+"""cosine of the angle from which a normal faces a point: smooth sides do to rounding, and corners that turn by less
+than 3 deg leave a point a thousandth of its distance too near"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -69,7 +72,7 @@ def nearest_footpoints(
     search = Descents(tuple(sides))
     start = None if hint is None else Places(shape=hint.side, u=hint.u, v=hint.v)
     found = search.nearest(points, start, converged=converged)
-    footpoints = footpoints_at(points, sides, found.shape, found.u, found.v)
+    footpoints = _facing_corners(footpoints_at(points, sides, found.shape, found.u, found.v), sides)
     rows = _deep_inside(footpoints, points, sides)
     if len(rows) == 0:
         return footpoints
@@ -78,7 +81,26 @@ def nearest_footpoints(
     nearer = other.square < found.square[rows]
     rows = rows[nearer]
     found.shape[rows], found.u[rows], found.v[rows] = other.shape[nearer], other.u[nearer], other.v[nearer]
-    return footpoints_at(points, sides, found.shape, found.u, found.v) if len(rows) else footpoints
+    if len(rows) == 0:
+        return footpoints
+    return _facing_corners(footpoints_at(points, sides, found.shape, found.u, found.v), sides)
+
+
+def _facing_corners(footpoints: Footpoints, sides: Sequence[Side]) -> Footpoints:
+    """The footpoints with those at corners, of blunt and sharp edges, facing their points, which lie outside.
+
+    The normal of either side there is across the way to the point, so that a point ahead of an edge would cost nothing.
+    """
+    corner = np.zeros(len(footpoints.u), dtype=bool)
+    for number, side in enumerate(sides):
+        knots, degree = (side.knots, side.degree) if isinstance(side, Curve) else (side.knots_u, side.degree_u)
+        kinks = np.unique(knots[degree - 1 :][knots[degree - 1 :] == knots[: len(knots) - degree + 1]])
+        corner |= (footpoints.side == number) & np.isin(footpoints.u, kinks)
+    way = footpoints.miss - np.sum(footpoints.miss * footpoints.beyond, axis=-1)[:, None] * footpoints.beyond
+    size = np.sqrt(np.sum(way**2, axis=-1))
+    corner &= np.abs(np.sum(way * footpoints.normals, axis=-1)) < FACING * size
+    normals = np.where(corner[:, None], way / np.where(size > 0.0, size, 1.0)[:, None], footpoints.normals)
+    return replace(footpoints, normals=normals)
 
 
 def _deep_inside(footpoints: Footpoints, points: Reals, sides: Sequence[Side]) -> NDArray[np.intp]:
