@@ -11,6 +11,7 @@ from bladewright.derivatives.complex_step import stepped
 from bladewright.numerics.quadrature import panels
 from machines import built
 from machines.coarse import CASCADE, CLEARED, RADIAL, ROTOR, SECTION
+from machines.sectioned import BLUNT, PLATE
 
 STEP = 1e-30
 ROUNDING = 1e-12
@@ -51,6 +52,20 @@ def test_points_are_linear_in_the_nets_and_grow_in_any_shape(design, blade, foun
     carried = np.imag(built.surfaces["upper"](u, v)) / STEP
     assert both[found.paths.index(path)] == pytest.approx(carried, abs=1e-15)
     assert found.points("upper", 0.3, 0.4).shape == (len(found.paths), 3)
+
+
+@pytest.mark.parametrize("design", [PLATE, BLUNT], ids=lambda design: design.name)
+def test_faces_of_blunt_edges_and_ends_follow_all_parameters_at_once_as_one_by_one(design):
+    base, values = built(design), design.parameters()
+    paths = [path for path in values if values[path]][::8]
+    for path, made in zip(paths, stepped(design, base, paths), strict=True):
+        alone = design.changed(path, values[path] + STEP * 1j).build(knots=base.knots)
+        for name, face in alone.surfaces.items():
+            own = made.surfaces[name]
+            pairs = zip(own.boundary, face.boundary, strict=True) if name in design.ends else [(own, face)]
+            for mine, theirs in pairs:
+                off = np.imag(mine.control_points - theirs.control_points) / STEP * values[path]
+                assert np.max(np.abs(off)) < 1e-12, (path, name)
 
 
 @pytest.mark.parametrize("at_once", [7, 50_000])

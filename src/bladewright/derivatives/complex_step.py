@@ -11,21 +11,29 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 from itertools import islice
-from typing import Any, TypeGuard
+from typing import Any, TypeGuard, cast
 
 import numpy as np
 
 from bladewright.blade.design.row_design import RowDesign
 from bladewright.blade.design.spanwise_steps import SpanwiseStep, step_alone
 from bladewright.blade.native.blade import Blade
-from bladewright.blade.native.end_faces import trimmed_ends
+from bladewright.blade.native.end_faces import EDGES, trimmed_ends
 from bladewright.blade.native.finishing import finished, stepped_finishes
-from bladewright.blade.native.interpolation import InterpolationData, interpolation_data, native_sides, sides_through
+from bladewright.blade.native.interpolation import (
+    ACROSS_EDGE,
+    InterpolationData,
+    interpolation_data,
+    native_sides,
+    nets_through,
+    sides_through,
+)
 from bladewright.blade.native.knots import Knots
 from bladewright.blade.native.lazy_faces import Face, LazyFaces
 from bladewright.blade.native.properties import blade_moments, middle_of, moment_gradient
 from bladewright.blade.native.refinement import mean_chord
 from bladewright.designs import Design
+from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array, concatenated
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
@@ -41,24 +49,29 @@ Nets = tuple[Array, Array]
 """Control nets, or their derivatives, of the upper and the lower side."""
 
 
-def side_tangents(blade: Blade, paths: Sequence[str]) -> Iterator[Nets]:
-    """Derivatives (k, n_u, n_v, 3) of the upper and the lower net by parameters, in order, at most AT_ONCE at a time.
+def face_tangents(blade: Blade, paths: Sequence[str]) -> Iterator[dict[str, Array]]:
+    """Derivatives (k, n_u, n_v, 3) of the nets of sides and blunt edges by parameters, at most AT_ONCE at a time.
 
-    In metres per unit of the parameter's field, at the blade's knots.
+    By the name of the face, in metres per unit of the parameter's field, at the blade's knots.
     """
     steps, sources = steps_of(blade.design, paths)
-    rates, mirrored = _rates_of_steps(blade, steps), _mirrored(blade)
+    rates = _rates_of_steps(blade, steps)
     weights = [step.weights(blade.knots.sites_v) for step in steps]
     for first in range(0, len(paths), AT_ONCE):
         chunk = sources[first : first + AT_ONCE]
         factors = np.stack([weights[step][:, place] for step, place in chunk])
         rows = rates[[step for step, _ in chunk]] * factors[..., None]
-        yield sides_through(data_from_rates(rows, mirrored), blade.knots)
+        yield nets_through(data_from_rates(rows, blade), blade.knots)
+
+
+def side_tangents(blade: Blade, paths: Sequence[str]) -> Iterator[Nets]:
+    """The same of the upper and the lower side."""
+    return ((tangents["upper"], tangents["lower"]) for tangents in face_tangents(blade, paths))
 
 
 def step_tangents(blade: Blade, steps: Sequence[SpanwiseStep]) -> Nets:
     """Derivatives (k, n_u, n_v, 3) of both nets by whole steps, each of all its parameters by the same amount."""
-    return sides_through(data_from_rates(_rates_of_steps(blade, steps), _mirrored(blade)), blade.knots)
+    return sides_through(data_from_rates(_rates_of_steps(blade, steps), blade), blade.knots)
 
 
 def steps_of(design: RowDesign, paths: Sequence[str]) -> tuple[list[SpanwiseStep], list[tuple[int, int]]]:
@@ -70,10 +83,6 @@ def steps_of(design: RowDesign, paths: Sequence[str]) -> tuple[list[SpanwiseStep
     number: dict[SpanwiseStep, int] = {}
     sources = [(number.setdefault(step, len(number)), place) for step, place in found]
     return list(number), sources
-
-
-def _mirrored(blade: Blade) -> list[bool]:
-    return [edge is None for edge in blade.exact.survey.lower_edges()]
 
 
 def _rates_of_steps(blade: Blade, steps: Sequence[SpanwiseStep]) -> Array:
@@ -100,22 +109,27 @@ def stepped_design(design: RowDesign, steps: Sequence[SpanwiseStep]) -> Any:
 def interpolation_rates(sections: Any, knots: Knots, count: int) -> Array:
     """Derivatives (count, m, k) of the interpolation data of sections that carry `count` steps, a row a section."""
     data = interpolation_data(sections, knots)
-    sides = [side.reshape(*side.shape[:-2], -1) for side in (data.upper, data.lower)]
+    points = [each.reshape(*each.shape[:-2], -1) for each in (*data.faces.values(), data.upper, data.lower)]
     edges = [data.leading_edge, data.trailing_edge, *data.lower_edges]
-    rows = concatenated([part for edge in edges if edge is not None for part in edge] + sides, axis=-1)
+    rows = concatenated([part for edge in edges if edge is not None for part in edge] + points, axis=-1)
     return np.broadcast_to(np.imag(rows) / STEP, (count, *rows.shape[-2:]))
 
 
-def data_from_rates(rows: Array, mirrored: Sequence[bool]) -> InterpolationData:
-    """Interpolation data from such rows; `mirrored` tells at which edges the lower side mirrors the upper one."""
-    count = 2 + sum(not each for each in mirrored)
-    edges, upper, lower = np.split(rows, [9 * count, (9 * count + rows.shape[-1]) // 2], axis=-1)
+def data_from_rates(rows: Array, blade: Blade) -> InterpolationData:
+    """Interpolation data of a blade from such rows."""
+    mirrored = [edge is None for edge in blade.exact.survey.lower_edges()]
+    blunt = [name for name in EDGES if name in blade.surfaces]
+    count, width = 2 + sum(not each for each in mirrored), 3 * len(ACROSS_EDGE)
+    edges, faces, sides = np.split(rows, [9 * count, 9 * count + width * len(blunt)], axis=-1)
     parts = iter(np.split(edges, 3 * count, axis=-1))
     found = [EdgeDerivatives(*islice(parts, 3)) for _ in range(count)]
     own = iter(found[2:])
     first, last = (None if each else next(own) for each in mirrored)
-    sides = [side.reshape(*side.shape[:-1], -1, 3) for side in (upper, lower)]
-    return InterpolationData(found[0], found[1], sides[0], sides[1], (first, last))
+    points = [*np.split(sides, 2, axis=-1), *(np.split(faces, len(blunt), axis=-1) if blunt else ())]
+    upper, lower, *across = (each.reshape(*each.shape[:-1], -1, 3) for each in points)
+    return InterpolationData(
+        found[0], found[1], upper, lower, (first, last), FrozenMapping(dict(zip(blunt, across, strict=True)))
+    )
 
 
 def built(design: Design, knots: Any = None) -> Any:
@@ -126,7 +140,7 @@ def built(design: Design, knots: Any = None) -> Any:
 def stepped(design: Design, base: Any, paths: Sequence[str]) -> Iterator[Any]:
     """What the design builds with a complex step on each parameter in turn, at the knots of `base`, its build.
 
-    A blade of two sides is made from its nets and their derivatives, and its ends only when they are used. One that is
+    A blade is made from its nets and their derivatives, and its ends only when they are used. One that is
     cut or filleted is so made from the plain blade, its contacts with surfaces by one more of Newton's steps.
     """
     values = design.parameters()
@@ -140,17 +154,22 @@ def stepped(design: Design, base: Any, paths: Sequence[str]) -> Iterator[Any]:
             for made in finish(blades, [base.design.stepped(path, values[path] + STEP * 1j) for path in chunk]):
                 yield replace(made, moments=partial(own_moments, _rates_of(base, made)))
         return
-    if not two_sided(base):
+    if not isinstance(base, Blade):
         for path in paths:
             yield built(design.stepped(path, values[path] + STEP * 1j), getattr(base, "knots", None))
         return
     rows, moments = iter(paths), _SteppedMoments(base)
-    for tangents in side_tangents(base, paths):
-        for pair in zip(*tangents, strict=True):
-            path = next(rows)
-            nets = [side.control_points + STEP * 1j * rate for side, rate in zip(base.sides, pair, strict=True)]
-            blade = _blade(base, design.stepped(path, values[path] + STEP * 1j), nets[0], nets[1])
-            yield replace(blade, moments=partial(moments, dict(zip(("upper", "lower"), pair, strict=True))))
+    real = {
+        name: cast(Surface, base.surfaces[name]).control_points
+        for name in ("upper", "lower", *EDGES)
+        if name in base.surfaces
+    }
+    for tangents in face_tangents(base, paths):
+        for number in range(len(tangents["upper"])):
+            path, rates = next(rows), {name: rate[number] for name, rate in tangents.items()}
+            nets = {name: net + STEP * 1j * rates[name] for name, net in real.items()}
+            blade = _blade(base, design.stepped(path, values[path] + STEP * 1j), nets)
+            yield replace(blade, moments=partial(moments, rates))
 
 
 def varied(design: Design, base: Any, changes: Sequence[Mapping[str, complex]]) -> Iterator[Any]:
@@ -173,7 +192,7 @@ def varied(design: Design, base: Any, changes: Sequence[Mapping[str, complex]]) 
         chunk = changes[first : first + AT_ONCE]
         upper, lower = varied_nets(base, chunk)
         for place, each in enumerate(chunk):
-            blade = _blade(base, design.changed(each), upper[place], lower[place])
+            blade = _blade(base, design.changed(each), {"upper": upper[place], "lower": lower[place]})
             yield replace(blade, chord=mean_chord(blade.exact))
 
 
@@ -245,15 +264,15 @@ def _rates_of(base: Blade, made: Blade) -> dict[str, Array]:
     return {name: np.imag(face.control_points) / STEP for name, face in faces.items() if isinstance(face, Surface)}
 
 
-def _blade(base: Blade, design: Any, upper: Array, lower: Array) -> Blade:
-    """The blade `base` with another design and nets, its knots held."""
+def _blade(base: Blade, design: Any, nets: Mapping[str, Array]) -> Blade:
+    """The blade `base` with another design and nets of sides and blunt edges, its knots held."""
     exact = base.exact.moved_to(design)
-    sides = [replace(side, control_points=net) for side, net in zip(base.sides, (upper, lower), strict=True)]
+    own = {name: replace(cast(Surface, base.surfaces[name]), control_points=net) for name, net in nets.items()}
+    upper, lower, *edges = own
 
     def ends() -> Mapping[str, Face]:
         like = {name: face for name, face in base.surfaces.items() if isinstance(face, TrimmedSurface)}
-        return trimmed_ends(exact, sides[0], sides[1], base.chord, like)
+        blunt = {name: own[name] for name in edges}
+        return trimmed_ends(exact, own[upper], own[lower], base.chord, like, faces=blunt)
 
-    own: dict[str, Face] = {"upper": sides[0], "lower": sides[1]}
-    surfaces = LazyFaces(own, tuple(base.surfaces), ends)
-    return replace(base, design=design, surfaces=surfaces, exact=exact)
+    return replace(base, design=design, surfaces=LazyFaces[Face](own, tuple(base.surfaces), ends), exact=exact)

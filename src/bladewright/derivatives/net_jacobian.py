@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.sparse import csr_array
 
-from bladewright.derivatives.complex_step import STEP, built, side_tangents, stepped, two_sided
+from bladewright.blade.native.blade import Blade
+from bladewright.derivatives.complex_step import STEP, built, face_tangents, stepped
 from bladewright.derivatives.patterns import Patterns, chosen
 from bladewright.designs import Design, unknown
 from bladewright.errors import DerivativeError
@@ -211,10 +212,15 @@ def pullback(
 def _rates(
     design: Design, base: Any, of: Part | None, paths: tuple[str, ...], shapes: Mapping[str, Shape]
 ) -> dict[str, Array]:
-    if of is None and two_sided(base) and set(shapes) <= {"upper", "lower"}:
-        pairs = list(side_tangents(base, paths)) if paths else []
-        sides = [np.concatenate([pair[side] for pair in pairs]) for side in (0, 1)]
-        return {name: sides[("upper", "lower").index(name)] for name in shapes}
+    if (
+        paths
+        and of is None
+        and isinstance(base, Blade)
+        and base.before is None
+        and not set(shapes) & set(base.design.ends)
+    ):
+        parts = list(face_tangents(base, paths))
+        return {name: np.concatenate([part[name] for part in parts]) for name in shapes}
     rates = {name: np.empty((len(paths), *shape.homogeneous.shape)) for name, shape in shapes.items()}
     for place, carrying in enumerate(stepped(design, base, paths)):
         faces = faces_of(carrying if of is None else of(carrying))

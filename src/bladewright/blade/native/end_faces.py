@@ -190,7 +190,7 @@ def trimmed_ends(
 
     The walls are the channel's or the flow path's, revolved about the axis or drawn along y in a cascade, exact; their
     u is the wall's own. `like` are the ends of a blade a small step away: their stretches of the walls and their knots
-    are taken. `faces` are those of blunt edges, of a blade that has no `like`. Raises DesignError where the blade winds
+    are taken. `faces` are those of blunt edges. Raises DesignError where the blade winds
     a full turn around the axis.
     """
     places = np.unique(upper.knots_u)
@@ -222,13 +222,15 @@ def _trimmed(
     chord: float,
     like: TrimmedSurface | None,
 ) -> TrimmedSurface:
-    held = [None, None] if like is None else [run_back(like.boundary[1]).knots, like.boundary[0].knots]
-    upper, lower = (followed(wall, *curve, chord, knots) for curve, knots in zip(outline, held, strict=True))
-    faces = {edge: followed(wall, *curve, chord) for edge, curve in blunt.items()}
-    boundary = [lower]
-    boundary += [run_back(faces["trailing_edge"])] if "trailing_edge" in faces else []
-    boundary += [run_back(upper)]
-    boundary += [faces["leading_edge"]] if "leading_edge" in faces else []
+    boundary: list[Curve] = []
+    around = {"upper": outline[0], "lower": outline[1], **blunt}
+    for name in ("lower", "trailing_edge", "upper", "leading_edge"):
+        if name not in around:
+            continue
+        against, held = name in ("trailing_edge", "upper"), None if like is None else like.boundary[len(boundary)]
+        knots = None if held is None else (run_back(held) if against else held).knots
+        found = followed(wall, *around[name], chord, knots)
+        boundary.append(run_back(found) if against else found)
     return TrimmedSurface(surface=wall.surface, boundary=tuple(boundary), revolution=wall.revolution)
 
 

@@ -3,13 +3,14 @@
 The edges' two derivatives are built into the sides' control points.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import islice
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from bladewright.blade.native.knots import DEGREE, Knots
+from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array, concatenated
 from bladewright.numerics.solving import solved
 from bladewright.nurbs.basis import Reals, basis
@@ -65,17 +66,34 @@ class InterpolationData(NamedTuple):
     """points (..., m, n_u - 6, 3)"""
     lower_edges: tuple[EdgeDerivatives | None, EdgeDerivatives | None] = (None, None)
     """the lower side at both edges where it does not mirror the upper one"""
+    faces: Mapping[str, Array] = FrozenMapping({})
+    """points (..., m, 4, 3) of the faces of blunt edges by name"""
 
 
 def interpolation_data(sections: SideStack, knots: Knots) -> InterpolationData:
     """What the sides interpolate of sections at `knots.sites_v`."""
     edges = sections.leading_edge(), sections.trailing_edge()
-    return InterpolationData(*edges, *sections.points(knots.sites_u), sections.lower_edges())
+    return InterpolationData(
+        *edges, *sections.points(knots.sites_u), sections.lower_edges(), sections.faces(ACROSS_EDGE)
+    )
 
 
 def sides_through(data: InterpolationData, knots: Knots) -> tuple[Array, Array]:
     """Control nets (..., n_u, n_v, 3) of the upper and the lower side that interpolate given data."""
     return _sides((data.leading_edge, data.trailing_edge), data.lower_edges, (data.upper, data.lower), knots)
+
+
+def nets_through(data: InterpolationData, knots: Knots) -> dict[str, Array]:
+    """The same with those (..., 6, n_v, 3) of the faces of blunt edges, by name."""
+    upper, lower = sides_through(data, knots)
+    edges = {name: edge_net(name, (upper, lower), _rows(points, knots)) for name, points in data.faces.items()}
+    return {"upper": upper, "lower": lower, **edges}
+
+
+def _rows(points: Array, knots: Knots) -> Array:
+    """Control points (..., k, n_v, 3) of curves along v through points (..., m, k, 3) at their sites."""
+    rows = solved(basis(knots.v, DEGREE, knots.sites_v), points.reshape(*points.shape[:-2], -1)).reshape(points.shape)
+    return np.swapaxes(rows, -3, -2)
 
 
 def _sides(
@@ -93,8 +111,7 @@ def _sides(
     lower = [None if edge is None else EdgeDerivatives(*islice(parts, 3)) for edge in own_lower]
     sides = []
     for points, at_edges in zip(points_of_sides, (upper, lower_edges(upper, lower)), strict=True):
-        rows = solved(matrix, points.reshape(*points.shape[:-2], -1)).reshape(points.shape)
-        sides.append(interpolated_along_u(np.swapaxes(rows, -3, -2), *at_edges, knots.u))
+        sides.append(interpolated_along_u(_rows(points, knots), *at_edges, knots.u))
     return sides[0], sides[1]
 
 
@@ -112,26 +129,25 @@ def edge_faces(sections: SideStack, upper: Surface, lower: Surface, knots: Knots
     They have the control points of both sides' edges. A face is one polynomial of degree 5 along u: it is as short as
     the edge is thick, so its arc about the axis is below rounding from that.
     """
-    matrix, found = basis(knots.v, DEGREE, knots.sites_v), {}
-    for name, points in sections.faces(ACROSS_EDGE).items():
-        rows = solved(matrix, points.reshape(*points.shape[:-2], -1)).reshape(points.shape)
-        found[name] = edge_face(name, (upper, lower), np.swapaxes(rows, -3, -2))
-    return found
+    faces = sections.faces(ACROSS_EDGE)
+    return {name: edge_face(name, (upper, lower), _rows(points, knots)) for name, points in faces.items()}
 
 
 def edge_face(name: str, sides: tuple[Surface, Surface], rows: Array) -> Surface:
     """One of them, through curves along v at ACROSS_EDGE, by their control points (4, m, 3) on the sides' knots."""
-    at = 0 if name == "leading_edge" else -1
-    clamped = np.repeat([0.0, 1.0], DEGREE + 1)
-    along = basis(clamped, DEGREE, ACROSS_EDGE)
-    ends = np.stack([side.control_points[at] for side in sides])
-    outer = np.tensordot(along[:, [0, -1]], ends, axes=1)
-    right = rows - outer
-    inner = solved(along[:, 1:-1], right.reshape(len(ACROSS_EDGE), -1)).reshape(right.shape)
     return Surface(
-        control_points=concatenated([ends[:1], inner, ends[1:]], axis=0),
-        knots_u=clamped,
+        control_points=edge_net(name, (sides[0].control_points, sides[1].control_points), rows),
+        knots_u=np.repeat([0.0, 1.0], DEGREE + 1),
         knots_v=sides[0].knots_v,
         degree_u=DEGREE,
         degree_v=DEGREE,
     )
+
+
+def edge_net(name: str, sides: tuple[Array, Array], rows: Array) -> Array:
+    """Its control points (..., 6, m, 3) from the nets of both sides and those (..., 4, m, 3) of such curves."""
+    along = basis(np.repeat([0.0, 1.0], DEGREE + 1), DEGREE, ACROSS_EDGE)
+    ends = np.stack([net[..., 0 if name == "leading_edge" else -1, :, :] for net in sides], axis=-3)
+    right = rows - np.moveaxis(np.tensordot(along[:, [0, -1]], ends, axes=(1, -3)), 0, -3)
+    inner = solved(along[:, 1:-1], right.reshape(*right.shape[:-2], -1)).reshape(right.shape)
+    return concatenated([ends[..., :1, :, :], inner, ends[..., 1:, :, :]], axis=-3)
