@@ -20,13 +20,13 @@ def solved(matrix: NDArray[np.float64], values: Array) -> Array:
     return found.view(np.complex128)
 
 
-def banded_solved(matrix: NDArray[np.float64], values: Array) -> Array:
-    """The same for a large matrix whose entries lie near its diagonal, by elimination within its bands."""
-    rows, columns = np.nonzero(matrix)
-    below, above = int(np.max(rows - columns)), int(np.max(columns - rows))
-    bands = np.zeros((below + above + 1, len(matrix)))
-    bands[above + rows - columns, columns] = matrix[rows, columns]
+def banded_solved(matrix: NDArray[np.float64], values: Array, width: int) -> Array:
+    """The same for a large matrix whose entries lie within `width` places of its diagonal, by elimination there."""
+    count = len(matrix)
+    bands = np.zeros((2 * width + 1, count))
+    for place in range(-width, width + 1):
+        bands[width - place, max(place, 0) : count + min(place, 0)] = np.diagonal(matrix, place)
     right = np.moveaxis(values, -2, 0)
-    flat = np.ascontiguousarray(right).reshape(len(matrix), -1)
-    found = solve_banded((below, above), bands, flat.view(np.float64), check_finite=False)
+    flat = np.ascontiguousarray(right).reshape(count, -1)
+    found = solve_banded((width, width), bands, flat.view(np.float64), check_finite=False)
     return np.moveaxis(np.ascontiguousarray(found).view(flat.dtype).reshape(right.shape), 0, -2)

@@ -21,6 +21,8 @@ TABLE = 50
 STEPS = 6
 """Newton steps of the inverse: it is then within 1e-9 of where twice as many lead, with 4 steps within 1e-4, because
 the speed may vanish at an end of the line (design/section_constants.py)"""
+SETTLED = 1e-9
+"""step of Newton's method after which it is exact: the next one would be its square [-]"""
 
 
 class ArcLength:
@@ -76,10 +78,17 @@ class ArcLength:
         cell = np.clip(np.searchsorted(self._lengths, w, side="right") - 1, 0, len(table) - 2)
         low, high = table[cell], table[cell + 1]
         s = np.interp(w, self._lengths, table)
+        moving = np.arange(len(w))
         for _ in range(STEPS):
-            value, slope = self._values(s)
+            value, slope = self._values(s[moving])
             still = slope == 0.0
-            s = np.clip(s - np.where(still, 0.0, value - w) / np.where(still, 1.0, slope), low, high)
+            new = s[moving] - np.where(still, 0.0, value - w[moving]) / np.where(still, 1.0, slope)
+            new = np.clip(new, low[moving], high[moving])
+            settled = np.square(new - s[moving]) < SETTLED**2
+            s[moving] = new
+            moving = moving[~settled]
+            if not len(moving):
+                break
         return np.where(w <= 0.0, self._ends[0], np.where(w >= 1.0, self._ends[-1], s))
 
     def _values(self, s: Reals) -> tuple[Reals, Reals]:

@@ -103,7 +103,7 @@ def interpolated_along_u(lines: Array, start: EdgeDerivatives, end: EdgeDerivati
     outer = np.concatenate([matrix[:, :3], matrix[:, -3:]], axis=1)
     right = lines - (outer @ known.reshape(*known.shape[:-2], -1)).reshape(*known.shape[:-3], *lines.shape[-3:])
     shape = right.shape
-    inner = banded_solved(matrix[:, 3:-3], right.reshape(*shape[:-2], -1)).reshape(shape)
+    inner = banded_solved(matrix[:, 3:-3], right.reshape(*shape[:-2], -1), DEGREE).reshape(shape)
     return concatenated([known[..., :3, :, :], inner, known[..., 3:, :, :]], axis=-3)
 
 
@@ -127,7 +127,7 @@ def _sides(outline: Outline, knots: Reals) -> Array:
 
 def _interpolated(points: Array, knots: Reals) -> Array:
     """Control points (n, 2) of a line through points (n, 2) at its Greville sites."""
-    return banded_solved(basis(knots, DEGREE, greville(knots, DEGREE)), points)
+    return banded_solved(basis(knots, DEGREE, greville(knots, DEGREE)), points, DEGREE)
 
 
 def _initial_knots(joints: list[tuple[float, int]]) -> Reals:

@@ -7,6 +7,7 @@ equations 25 and 30; their 37 and 38 print SF for SF^2, and signs that do not fo
 """
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -51,9 +52,12 @@ class SegmentEnd:
         return [each[..., None, :] for each in found]
 
 
+@cache
 def segment_knots(count: int) -> Reals:
-    """The clamped uniform knots of a segment with so many control points."""
-    return uniform_knots(count, DEGREE)
+    """The clamped uniform knots of a segment with so many control points, read-only."""
+    knots = uniform_knots(count, DEGREE)
+    knots.setflags(write=False)
+    return knots
 
 
 def control_points(start: SegmentEnd, inner: Array, end: SegmentEnd) -> Array:
@@ -67,9 +71,15 @@ def control_points(start: SegmentEnd, inner: Array, end: SegmentEnd) -> Array:
 def powers(controls: Array) -> Array:
     """Coefficients (..., m, n - 3, 4, 2) of t^0 to t^3, 0 <= t <= 1, on the spans of a segment's curve."""
     count = controls.shape[-2]
-    knots = segment_knots(count)
-    starts, width = breaks(knots)[:-1], 1.0 / (count - DEGREE)
-    factors = (1.0, width, width**2 / 2.0, width**3 / 6.0)
-    rows = np.stack([factor * basis(knots, DEGREE, starts, order) for order, factor in enumerate(factors)], axis=1)
-    flat = rows.reshape(-1, count) @ controls
+    flat = _power_rows(count) @ controls
     return flat.reshape(*controls.shape[:-2], count - DEGREE, DEGREE + 1, 2)
+
+
+@cache
+def _power_rows(count: int) -> Reals:
+    """The matrix (4 (n - 3), n) from control points to these coefficients."""
+    knots, width = segment_knots(count), 1.0 / (count - DEGREE)
+    factors = (1.0, width, width**2 / 2.0, width**3 / 6.0)
+    starts = breaks(knots)[:-1]
+    rows = np.stack([factor * basis(knots, DEGREE, starts, order) for order, factor in enumerate(factors)], axis=1)
+    return rows.reshape(-1, count)
