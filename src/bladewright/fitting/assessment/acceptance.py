@@ -6,6 +6,7 @@ import numpy as np
 
 from bladewright.fitting.assessment.coverage import least_thickness, loose_ends, uncovered_edges
 from bladewright.fitting.assessment.estimates import ParameterEstimates
+from bladewright.fitting.assessment.foreign_edges import foreign_edges
 from bladewright.fitting.assessment.lengths import with_unit
 from bladewright.fitting.assessment.measurement import Measurement
 from bladewright.fitting.initial_guess.blade import AXES_HINT
@@ -162,6 +163,11 @@ def notes_of(
         f"no point lies around the {name}: where it ends and how round it is are guessed"
         for name, (_, share) in uncovered_edges(match).items()
         if share <= HALF_BLADE_WIDTH
+    ]
+    sentences += [
+        f"the {name} of the points is cut off, {with_unit(match.design, width, 2)} wide, and the edges of this family "
+        "are round: it stays within half of that (--family profile has blunt and sharp edges)"
+        for name, width in foreign_edges(match).items()
     ]
     loose = loose_ends(match)
     if loose:
