@@ -29,6 +29,7 @@ def test_a_study_asserts_its_number_and_leaves_its_files(name, tmp_path, monkeyp
 
 SEARCHES = {
     "fan-mass": ([], ("fan-mass.png", "lightest-fan.toml", "lightest-fan.step")),
+    "stator-throat": ([], ("stator-throat.toml", "stator-throat.step")),
     "vane-front": (
         ["--members", "3", "--population", "8", "--generations", "1", "--jobs", "1"],
         ("vane-front.png", "vane-front.jsonl", "vane-front-nsga2.jsonl"),
