@@ -1,6 +1,5 @@
 """Fillets of blades with corners: a ball that pivots about sharp, blunt and cut edges."""
 
-import re
 from dataclasses import replace
 from importlib.resources import files
 
@@ -21,6 +20,7 @@ from bladewright.cad.solids import occ_solid
 from bladewright.derivatives.complex_step import stepped
 from bladewright.numerics.elementary import cross, length
 from machines.coarse import CASCADE, ROTOR
+from machines.refusals import names_the_largest_radius
 
 U = np.linspace(0.0, 1.0, 41)
 SHARE = 0.015
@@ -195,12 +195,7 @@ def test_points_for_solvers_lie_on_fillets_about_corners_too(blade):
 
 def test_a_refusal_names_the_largest_radius_that_holds():
     asked = filleted("sharp edges", radius=0.4 * SHARP.build().chord / SHARP.metre)
-    with pytest.raises(bw.DesignError, match="the largest that holds is") as refused:
-        asked.build()
-    largest = float(re.search(r"holds is ([\d.e+-]+)", str(refused.value))[1])
-    asked.changed("hub_fillet.radius", 0.95 * largest).build()
-    with pytest.raises(bw.DesignError, match="the largest that holds is"):
-        asked.changed("hub_fillet.radius", 1.05 * largest).build()
+    assert names_the_largest_radius(asked)
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -57,18 +57,9 @@ class OperatingPoint:
             subject = exact_airfoil(built.design, built.outline)
         else:
             subject = airfoil_of(built.built if built.design.dimension == 2 else built.built.section(self.span))
-        return polar(
-            subject,
-            self.reynolds,
-            self.angles,
-            mach=self.mach,
-            solver=self.solver,
-            n_crit=self.n_crit,
-            transition=self.transition,
-            reference_length=self.reference_length,
-            moment_point=self.moment_point,
-            time_limit=self.time_limit,
-        )
+        own = {"reynolds", "alpha", "span"}
+        conditions: dict[str, Any] = {name: value for name, value in asdict(self).items() if name not in own}
+        return polar(subject, self.reynolds, self.angles, **conditions)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -50,6 +50,15 @@ class Optimality:
         """The larger of residual and violation."""
         return max(self.residual, self.violation)
 
+    def failures(self, tolerance: float) -> tuple[str, ...]:
+        """A sentence for each condition that is missed by more than a tolerance."""
+        pairs = (("the KKT residual", self.residual), ("the largest violation of a constraint", self.violation))
+        return tuple(
+            f"{what} is {value:.1e}, more than the tolerance of {tolerance:g}"
+            for what, value in pairs
+            if value > tolerance
+        )
+
 
 def optimality(x: Reals, at: Rows, variables: tuple[str, ...]) -> Optimality:
     """The conditions at a vector x (n,) between 0 and 1, with the multipliers that meet them best."""

@@ -11,7 +11,7 @@ from bladewright.display import Shown
 from bladewright.nurbs.basis import Reals
 from bladewright.studies.goals import Goals
 from bladewright.studies.optimality import Optimality
-from bladewright.studies.run import Experiment
+from bladewright.studies.run import Experiment, headed
 
 
 @final
@@ -64,13 +64,8 @@ class Optimum(Shown):
     @property
     def failures(self) -> tuple[str, ...]:
         """Why it is no optimum."""
-        found, end = self.optimality, f": it ended where a design is refused: {self.refusal}" if self.refusal else ""
-        pairs = (("the KKT residual", found.residual), ("the largest violation of a constraint", found.violation))
-        return tuple(
-            f"{what} is {value:.1e}, more than the tolerance of {self.tolerance:g}{end}"
-            for what, value in pairs
-            if value > self.tolerance
-        )
+        end = f": it ended where a design is refused: {self.refusal}" if self.refusal else ""
+        return tuple(f"{each}{end}" for each in self.optimality.failures(self.tolerance))
 
     @property
     def aim(self) -> str:
@@ -86,8 +81,7 @@ class Optimum(Shown):
 
     def heading(self, figure: str) -> str:
         """The name of a figure, with its unit."""
-        unit = self.experiment.units.get(figure) or self.experiment.units.get(figure.rpartition(".")[0], "-")
-        return figure if unit == "-" else f"{figure} [{unit}]"
+        return headed(figure, self.experiment.unit(figure))
 
     def to_dict(self) -> dict[str, Any]:
         """All figures, for JSON."""

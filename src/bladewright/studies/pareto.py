@@ -62,10 +62,9 @@ class ParetoSet(Shown):
     def failures(self) -> tuple[str, ...]:
         """A sentence for each member at which a search with derivatives has not ended at an optimum."""
         return tuple(
-            f"run {number}: {what} is {value:.1e}, more than the tolerance of {self.tolerance:g}"
+            f"run {number}: {each}"
             for number, found in self.optimality.items()
-            for what, value in (("the KKT residual", found.residual), ("the violation", found.violation))
-            if value > self.tolerance
+            for each in found.failures(self.tolerance)
         )
 
     @property

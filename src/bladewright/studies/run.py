@@ -53,6 +53,10 @@ class Experiment:
         found = {each.name: each.unit(self.designs) for each in self.quantities}
         return {name: unit for name, unit in found.items() if unit}
 
+    def unit(self, figure: str) -> str:
+        """Unit of a figure, or of the quantity of which it is a component; empty where it is not known."""
+        return self.units.get(figure) or self.units.get(figure.rpartition(".")[0], "")
+
 
 @dataclass(frozen=True, kw_only=True)
 class Record:
@@ -86,6 +90,11 @@ class Record:
     def from_dict(cls, data: Mapping[str, Any]) -> Self:
         """The inverse of `line`, of the JSON object on it."""
         return cls(**{**data, "files": tuple(data["files"])})
+
+
+def headed(name: str, unit: str) -> str:
+    """A name with its unit, where it has one."""
+    return name if unit in {"", "-"} else f"{name} [{unit}]"
 
 
 def record_of(experiment: Experiment, run: int, parameters: Mapping[str, Any]) -> Record:

@@ -19,7 +19,7 @@ from bladewright.designs import Design, unit_at
 from bladewright.display import Shown
 from bladewright.errors import StudyError
 from bladewright.nurbs.basis import Reals
-from bladewright.studies.run import Experiment, Record, Verdict
+from bladewright.studies.run import Experiment, Record, Verdict, headed
 from bladewright.studies.variables import Variable, changed_designs
 
 if TYPE_CHECKING:
@@ -98,7 +98,7 @@ class Runs(Shown):
         """Units of the variables and of the figures by name, where they are known."""
         found = {each.name: _unit(each, self.experiment.designs) for each in self.experiment.variables}
         for name in self.figures:
-            found[name] = self.experiment.units.get(name) or self.experiment.units.get(name.rpartition(".")[0], "")
+            found[name] = self.experiment.unit(name)
         return {name: unit for name, unit in found.items() if unit}
 
     def design(self, run: int) -> Any:
@@ -112,8 +112,7 @@ class Runs(Shown):
 
     def heading(self, name: str) -> str:
         """The name of a variable or figure, with its unit."""
-        unit = self.units.get(name, "-")
-        return name if unit == "-" else f"{name} [{unit}]"
+        return headed(name, self.units.get(name, ""))
 
     def plot(self, drawing: Literal["parallel", "scatter", "effects"] = "parallel") -> Figure:
         """A matplotlib figure: parallel coordinates, a scatter matrix, or the main effects of the variables.
