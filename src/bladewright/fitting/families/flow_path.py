@@ -13,7 +13,7 @@ from bladewright.blade.native.blade import Blade
 from bladewright.designs import Point
 from bladewright.errors import FitError
 from bladewright.fitting.free_parameters import WALLS
-from bladewright.numerics.elementary import cumulative_length
+from bladewright.numerics.elementary import cumulative_length, unit
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 
 WALL_COUNTS = (3, 4, 5, 7, 9)
@@ -97,7 +97,7 @@ def _wall(line: Reals) -> Reals:
     """Points of a wall, a line (n, 2) continued straight: as few as follow it within `WALL_DISTANCE`."""
     way = cumulative_length(line)
     size = float(way[-1])
-    first, last = _unit(line[0] - line[1]), _unit(line[-1] - line[-2])
+    first, last = unit(line[0] - line[1]), unit(line[-1] - line[-2])
     ends = [size * _share_off_axis(end[1], size * out[1]) * out for end, out in ((line[0], first), (line[-1], last))]
     longer = np.concatenate([[line[0] + ends[0] * CONTINUATION], line, [line[-1] + ends[1] * CONTINUATION]])
     along = cumulative_length(longer)
@@ -120,14 +120,10 @@ def _share_off_axis(radius: float, slope: float) -> float:
 
 def _extended(line: Reals, times: float = 1.0) -> Reals:
     """A line (n, 2) that is continued straight past both ends."""
-    size = float(np.sum(np.sqrt(np.sum(np.diff(line, axis=0) ** 2, axis=1))))
+    size = float(cumulative_length(line)[-1])
     steps = times * EDGE_OVERREACH * size * np.linspace(0.0, 1.0, 13)[1:, None]
-    first, last = _unit(line[0] - line[1]), _unit(line[-1] - line[-2])
+    first, last = unit(line[0] - line[1]), unit(line[-1] - line[-2])
     return np.concatenate([(line[0] + steps * first)[::-1], line, line[-1] + steps * last])
-
-
-def _unit(vector: Reals) -> Reals:
-    return np.asarray(vector / np.sqrt(np.sum(vector**2)))
 
 
 def _along(line: Reals, at: Reals) -> Reals:
