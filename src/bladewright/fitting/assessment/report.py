@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bladewright.fitting.assessment.deviation import FIGURES, REGIONS, Deviation
-from bladewright.fitting.assessment.lengths import unit_of_parameter
+from bladewright.fitting.assessment.text import unit_of_parameter
 
 if TYPE_CHECKING:
     from bladewright.fitting.assessment.result import Estimate, Fit

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bladewright.designs import Design, unit_at
 from bladewright.fitting.assessment.deviation import FIGURES, REGIONS
-from bladewright.fitting.assessment.lengths import in_unit, unit_of_lengths, unit_of_parameter, with_unit
+from bladewright.section.checks import UNITS
 
 if TYPE_CHECKING:
     from bladewright.fitting.assessment.result import Estimate, Fit
@@ -113,3 +114,24 @@ def _with_spread(each: Estimate) -> tuple[str, str]:
 
 def _number_of(count: int, what: str) -> str:
     return f"{count} {what}{'' if count == 1 else 's'}"
+
+
+def unit_of_lengths(design: Design) -> str:
+    """The design's unit of length."""
+    return str(getattr(design, "length_unit", "mm"))
+
+
+def in_unit(design: Design, metres: float, digits: int = 3) -> str:
+    """A length [m] as a number of the design's unit."""
+    return f"{metres / UNITS[unit_of_lengths(design)]:.{digits}g}"
+
+
+def with_unit(design: Design, metres: float, digits: int = 3) -> str:
+    """The same with the unit."""
+    return f"{in_unit(design, metres, digits)} {unit_of_lengths(design)}"
+
+
+def unit_of_parameter(design: Design, path: str) -> str:
+    """Unit of a parameter: that of its field, the design's unit of length where it is one."""
+    unit = unit_at(design, path) or "-"
+    return unit_of_lengths(design) if unit == "length" else unit

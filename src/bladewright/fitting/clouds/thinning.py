@@ -1,7 +1,8 @@
-"""Fewer points of a cloud: drawn at random, or spread evenly."""
+"""Fewer points of a cloud: drawn at random, spread evenly, or without those that stand alone."""
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from bladewright.nurbs.basis import Reals
 
@@ -46,3 +47,16 @@ def _cells(places: Reals, halvings: float) -> tuple[NDArray[np.intp], Reals]:
     corner = np.floor(places * count)
     keys = corner.astype(np.intp) @ (count + 1) ** np.arange(places.shape[1])
     return keys, np.sum((places * count - corner - 0.5) ** 2, axis=1)
+
+
+def without_isolated_points(points: Reals, neighbours: int = 5) -> Reals:
+    """The points whose neighbours are about as near as those of the points around them: strewn outliers stand alone."""
+    tree = cKDTree(points)
+    distances, index = tree.query(points, k=neighbours + 1)
+    own = np.mean(distances[:, 1:], axis=1)
+    around = np.median(own[index[:, 1:]], axis=1)
+    lonely = (own > 4.0 * around) & (own > 2.0 * np.median(own))
+    lonely |= own > 6.0 * np.percentile(own, 75.0)
+    if np.mean(lonely) > 0.12:
+        lonely &= own >= np.percentile(own, 90.0)
+    return np.asarray(points[~lonely])

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from bladewright.fitting.clouds.isolated import without_isolated_points
-from bladewright.fitting.clouds.thinning import even_subset
+from bladewright.fitting.clouds.thinning import even_subset, without_isolated_points
 from bladewright.fitting.design_header import Arrangement
 from bladewright.fitting.initial_guess.hypotheses import SlicedChannel, machine_coordinates, ranked_channels
 from bladewright.nurbs.basis import Reals

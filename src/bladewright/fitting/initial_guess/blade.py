@@ -13,8 +13,7 @@ from bladewright.blade.design.flow_path import Channel
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Point
 from bladewright.errors import BladewrightError, FitError
-from bladewright.fitting.clouds.isolated import without_isolated_points
-from bladewright.fitting.clouds.thinning import even_subset, random_subset
+from bladewright.fitting.clouds.thinning import even_subset, random_subset, without_isolated_points
 from bladewright.fitting.design_header import Arrangement, Unit
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.arrangement import arranged_channels

@@ -7,8 +7,7 @@ import numpy as np
 
 from bladewright.designs import Design
 from bladewright.errors import BladewrightError, DesignError, FitError
-from bladewright.fitting.clouds.isolated import without_isolated_points
-from bladewright.fitting.clouds.thinning import even_subset
+from bladewright.fitting.clouds.thinning import even_subset, without_isolated_points
 from bladewright.fitting.design_header import Unit
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.laws import unified_numbers

@@ -7,8 +7,7 @@ from scipy.spatial import ConvexHull, cKDTree
 
 from bladewright.errors import FitError
 from bladewright.fitting.assessment.result import Motion
-from bladewright.fitting.clouds.isolated import without_isolated_points
-from bladewright.fitting.clouds.thinning import random_subset
+from bladewright.fitting.clouds.thinning import random_subset, without_isolated_points
 from bladewright.fitting.design_header import Arrangement
 from bladewright.numerics.robust import TUKEY_WIDTH, median_deviation, tukey_weights
 from bladewright.nurbs.basis import Reals

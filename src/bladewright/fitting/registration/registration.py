@@ -19,8 +19,7 @@ from scipy.spatial import cKDTree
 from bladewright.designs import Design
 from bladewright.errors import FitError
 from bladewright.fitting.assessment.result import Motion
-from bladewright.fitting.clouds.isolated import without_isolated_points
-from bladewright.fitting.clouds.thinning import even_subset, random_subset
+from bladewright.fitting.clouds.thinning import even_subset, random_subset, without_isolated_points
 from bladewright.fitting.matching.footpoints import Side, footpoints_at, nearest_footpoints
 from bladewright.fitting.models.blunt_edges import sides_of
 from bladewright.fitting.registration.rigid_motion import FREEDOMS, GENERATORS, composed, rotation_by
