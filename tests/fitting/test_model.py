@@ -11,6 +11,7 @@ from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.models.model import model_of
 from bladewright.fitting.models.unified import _fold_margins
 from machines import example
+from machines.sectioned import BLUNT
 
 NAMES = ("turbine-section", "compressor-stator")
 
@@ -110,3 +111,15 @@ def test_residuals_change_as_central_differences_say(name):
         # near an edge a foot may change sides, and the heights there are not smooth
         error = np.abs(found - exact @ way)[:count] / np.max(np.abs(found[:count]))
         assert np.percentile(error, 97.0) < 1e-4
+
+
+def test_a_blade_with_a_blunt_edge_moves_as_central_differences_say():
+    design = BLUNT
+    model = model_of(design, 1e-3)
+    shape, path = model.shape(design), next(path for path in design.parameters() if "metal_angle_in" in path)
+    ends = [
+        model.shape(design.changed(path, design.parameters()[path] + step)).sides[0].control_points
+        for step in (1e-4, -1e-4)
+    ]
+    rates = model.tangents(shape, [path])[0][0]
+    assert rates == pytest.approx((ends[0] - ends[1]) / 2e-4, abs=1e-5 * np.max(np.abs(rates)))

@@ -118,7 +118,8 @@ def interpolation_rates(sections: Any, knots: Knots, count: int) -> Array:
 def data_from_rates(rows: Array, blade: Blade) -> InterpolationData:
     """Interpolation data of a blade from such rows."""
     mirrored = [edge is None for edge in blade.exact.survey.lower_edges()]
-    blunt = [name for name in EDGES if name in blade.surfaces]
+    # a model of a search has no surfaces
+    blunt = list(blade.exact.survey.faces(ACROSS_EDGE))
     count, width = 2 + sum(not each for each in mirrored), 3 * len(ACROSS_EDGE)
     edges, faces, sides = np.split(rows, [9 * count, 9 * count + width * len(blunt)], axis=-1)
     parts = iter(np.split(edges, 3 * count, axis=-1))

@@ -18,7 +18,7 @@ INSIDE = 0.05
 UNKNOWNS = 6
 """place, half width and turn of a face, and the slopes of both sides"""
 CONFIDENCE = 0.999
-"""with which points are nearer to a face than to a round edge: by the ratio of their variances (Fisher's F) [-]"""
+"""with which points are nearer to a face than to a round edge: by the ratio of their variances (Fisher 1925) [-]"""
 
 
 def foreign_edges(match: Match) -> dict[str, float]:

@@ -45,7 +45,7 @@ OUTLINE_POINTS = 1000
 """points by which contours are searched"""
 BESIDE, BY_CHANCE = 16, 1e-3
 """points beside each other by which a misfit is told that stays with an edge, which seldom has more, and probability
-that noise alone looks like one (`BY_CHANCE`) [-]"""
+that noise alone looks like one (`BY_CHANCE`), by the chi-squared test (Pearson 1900) [-]"""
 OUTLINE_SURPLUS = 2
 """by how many the points of a contour are fewer than its parameters: one coordinate is free of each point but two, and
 four numbers place the section"""
