@@ -8,16 +8,16 @@ import numpy as np
 
 from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.blade.exact.cut_sectioned import exact_blade_of_sections
-from bladewright.blade.native.blade import Blade, side_surface
+from bladewright.blade.native.blade import side_surface
 from bladewright.blade.native.interpolation import edge_faces, native_sides
 from bladewright.blade.native.knots import DEGREE, Knots
 from bladewright.blade.native.refinement import mean_chord, refined_knots
-from bladewright.derivatives.complex_step import side_tangents
+from bladewright.derivatives.complex_step import Nets
 from bladewright.fitting.models.blunt_edges import BluntEdges, closed_nets, closed_with
 from bladewright.fitting.models.feasibility import infeasibility
 from bladewright.fitting.models.model import Model, ModelShape, model_of
 from bladewright.fitting.models.planar import infeasibility_rates
-from bladewright.frozen import FrozenMapping
+from bladewright.fitting.models.spatial import SpatialModel
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import Span
 
@@ -26,7 +26,7 @@ FEASIBILITY_SPAN = Span(np.linspace(0.0, 1.0, 5))
 
 
 @final
-class SectionedModel(Model):
+class SectionedModel(SpatialModel):
     """A blade from sections of any family, at the knots that one design needs for a tolerance, of the chord."""
 
     def __init__(self, design: SectionedBlade, tolerance: float | None = None) -> None:
@@ -46,13 +46,8 @@ class SectionedModel(Model):
         constraints = np.real(infeasibility(design.section, FEASIBILITY_SPAN))
         return ModelShape(design=design, sides=(upper, lower), exact=exact, constraints=constraints)
 
-    def tangents(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
-        """By every parameter in a batch; a face of a blunt edge moves as the straight one between its edges."""
-        blade = Blade(
-            design=shape.design, surfaces=FrozenMapping({}), knots=self.knots, chord=self.chord, exact=shape.exact
-        )
-        pairs = list(side_tangents(blade, paths))
-        upper, lower = (np.concatenate([pair[side] for pair in pairs]) for side in (0, 1))
+    def _closed(self, upper: Reals, lower: Reals) -> Nets:
+        """With a face of a blunt edge that moves as the straight one between its edges."""
         if not any(self.blunt):
             return upper, lower
         rates = closed_nets(np.moveaxis(upper, 1, -2), np.moveaxis(lower, 1, -2), DEGREE, self.blunt)

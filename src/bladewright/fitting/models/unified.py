@@ -8,13 +8,13 @@ import numpy as np
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.blade.exact.unified import SURVEY, ExactUnifiedBlade, exact_unified_blade
 from bladewright.blade.flow_path.channel import TransfiniteChannel
-from bladewright.blade.native.blade import Blade, side_surface
+from bladewright.blade.native.blade import side_surface
 from bladewright.blade.native.interpolation import native_sides
 from bladewright.blade.native.knots import DEGREE, Knots
 from bladewright.blade.native.refinement import mean_chord, refined_knots
-from bladewright.derivatives.complex_step import STEP, side_tangents, stepped_design, steps_of
+from bladewright.derivatives.complex_step import STEP, Nets, stepped_design, steps_of
 from bladewright.fitting.models.model import Model, ModelShape, complex_steps, model_of
-from bladewright.frozen import FrozenMapping
+from bladewright.fitting.models.spatial import SpatialModel
 from bladewright.numerics.elementary import Array, concatenated, cross2, length
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber import camber_points
@@ -75,7 +75,7 @@ class SectionModel(Model):
 
 
 @final
-class BladeModel(Model):
+class BladeModel(SpatialModel):
     """Blades of the unified family, at the knots that one of them needs."""
 
     rounded = True
@@ -99,17 +99,7 @@ class BladeModel(Model):
             exact=exact,
         )
 
-    def tangents(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
-        """By laws as a whole, and by each parameter of the channel."""
-        blade = Blade(
-            design=shape.design,
-            surfaces=FrozenMapping({}),
-            knots=self.knots,
-            chord=self.chord,
-            exact=shape.exact,
-        )
-        pairs = list(side_tangents(blade, paths))
-        upper, lower = (np.concatenate([pair[side] for pair in pairs]) for side in (0, 1))
+    def _closed(self, upper: Reals, lower: Reals) -> Nets:
         return upper, lower
 
     def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
