@@ -69,8 +69,9 @@ def test_a_prediction_is_the_least_squares_of_the_linear_problem():
     found = linear.prediction(counts)
     subspace, shift = linear.subspace(counts)
     problem = linear.match.problem
-    columns = np.concatenate([linear.slopes, problem.regularisation.matrix])
-    rows = [linear.residuals, problem.regularisation.residuals(problem.vector(linear.design))]
+    ridge = np.sqrt(linear.ridge) * np.eye(linear.slopes.shape[1])
+    columns = np.concatenate([linear.slopes, problem.regularisation.matrix, ridge])
+    rows = [linear.residuals, problem.regularisation.residuals(problem.vector(linear.design)), np.zeros(len(ridge))]
     step, rest, *_ = np.linalg.lstsq(columns @ subspace, -(np.concatenate(rows) + columns @ shift), rcond=None)
     assert found.cost == pytest.approx(float(rest[0]), rel=1e-6)
     assert found.parameters == len(step) == linear.slopes.shape[1] - 6
@@ -96,10 +97,11 @@ def test_errors_of_left_out_neighbourhoods_are_those_of_fits_without_them():
     subspace, shift = linear.subspace(counts)
     penalty = linear.match.problem.regularisation
     rows = linear.residuals + linear.slopes @ shift
-    held = penalty.residuals(linear.match.problem.vector(linear.design)) + penalty.matrix @ shift
+    ridge = np.sqrt(linear.ridge) * np.eye(len(shift))
+    held = [penalty.residuals(linear.match.problem.vector(linear.design)) + penalty.matrix @ shift, ridge @ shift]
     kept, out = folds != 3, np.flatnonzero(folds[: linear.points] == 3)
-    columns = np.concatenate([linear.slopes[kept], penalty.matrix]) @ subspace
-    step = np.linalg.lstsq(columns, -np.concatenate([rows[kept], held]), rcond=None)[0]
+    columns = np.concatenate([linear.slopes[kept], penalty.matrix, ridge]) @ subspace
+    step = np.linalg.lstsq(columns, -np.concatenate([rows[kept], *held]), rcond=None)[0]
     assert errors[3] == pytest.approx(float(np.sum((rows[out] + linear.slopes[out] @ subspace @ step) ** 2)), rel=1e-5)
 
 

@@ -13,8 +13,8 @@ WEIGHTED_DEVIATION = 0.8
 """deviation, of the tolerance, from which a point's weight rises."""
 WEIGHT_CHANGE, WEIGHT_RANGE = (0.5, 2.0), (0.02, 50.0)
 """range by which the weight of a point changes at a time, and in all (`WEIGHT_RANGE`)."""
-FIRST_REWEIGHTINGS = 12
-"""times that weights change for the first prediction; for those that follow they change once."""
+REWEIGHTINGS = 12
+"""times that weights change for a prediction at most"""
 PREDICTED, LARGEST_PREDICTED = 0.95, 1.5
 """largest predicted distance, of the tolerance, with which a structure is searched, and from which none is narrowed
 (`LARGEST_PREDICTED`)."""
@@ -29,7 +29,7 @@ def eliminated(model: LinearModel, least: int, tolerance: float | None = None) -
     now = model.prediction(model.counts)
     while now is not None:
         if tolerance is not None:
-            now = _reweighted_prediction(model, now, tolerance, 1 if found else FIRST_REWEIGHTINGS)
+            now = reweighted_prediction(model, now, tolerance)
             if now.largest > LARGEST_PREDICTED * tolerance:
                 break
         found.append(now)
@@ -48,8 +48,9 @@ def eliminated(model: LinearModel, least: int, tolerance: float | None = None) -
     return found
 
 
-def _reweighted_prediction(model: LinearModel, prediction: Prediction, tolerance: float, times: int) -> Prediction:
-    for _ in range(times):
+def reweighted_prediction(model: LinearModel, prediction: Prediction, tolerance: float) -> Prediction:
+    """A prediction of the same structure whose largest distance is small, as far as a tolerance asks, of the chord."""
+    for _ in range(REWEIGHTINGS):
         model.weighted(reweighted(model.weights, np.abs(prediction.rows), tolerance))
         prediction = model.prediction(prediction.counts) or prediction
         if prediction.largest <= PREDICTED * tolerance:

@@ -7,6 +7,7 @@ distance, or else the smallest error of prediction where whole neighbourhoods of
 2017), within one standard error (Hastie, Tibshirani and Friedman 2009, section 7.10).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
@@ -18,10 +19,17 @@ from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.estimates import undetermined_parameters
 from bladewright.fitting.free_parameters import corner_radii
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, evaluated, searched
-from bladewright.fitting.model_selection.elimination import PREDICTED, best_of_size, eliminated, reweighted
+from bladewright.fitting.model_selection.elimination import (
+    LARGEST_PREDICTED,
+    PREDICTED,
+    best_of_size,
+    eliminated,
+    reweighted_prediction,
+)
 from bladewright.fitting.model_selection.match_target import MatchTarget
 from bladewright.fitting.model_selection.prediction import FOLDS, LinearModel, Prediction, folds_of
 from bladewright.fitting.model_selection.reshaping import Counts, reshaped, with_feasible_edges
+from bladewright.fitting.model_selection.reweighting import confirmed_match, largest_of, nearest_to_tolerance
 from bladewright.fitting.model_selection.rich_structures import rich_structure, wider_structure
 from bladewright.fitting.model_selection.structure import Structure, structure_of
 
@@ -82,10 +90,11 @@ def selected_match(
     near = NEAR * found.model.chord
     if target.open and found.maximum < near:
         rich = found
-    elif target.open:
-        rich = selection.rich(found, near if task.dimension == 2 else np.inf)
+    elif target.open and task.dimension == 2:
+        rich = selection.rich(found, lambda each: each.maximum <= near)
     else:
-        rich = selection.rich(found, REWEIGHTED_GAIN * (target.tolerance or np.inf))
+        aim = LARGEST_OPEN[0] * found.model.chord if target.open else target.tolerance or np.inf
+        rich = selection.rich(found, partial(selection.holds, tolerance=aim))
     if len(rich.rows) < len(several.points):
         # no richer one has a shape, or none is needed: the first match, of few points, stands
         rich = evaluated(several, rich.design, noise=rich.rms)
@@ -101,7 +110,7 @@ def selected_match(
         found = selection.near_everywhere(rich)
     if target.tolerance is not None:
         confirmed = len(many.points) == len(several.points)
-        return (found if confirmed else _confirmed(many, found, target.tolerance)), reason
+        return (found if confirmed else confirmed_match(many, found, target.tolerance)), reason
     return determined(many, found) if target.open else (_searched_further(many, found), reason)
 
 
@@ -138,7 +147,7 @@ def _of_structure(several: Task, many: Task, found: Match, structure: Structure,
         tried = [found] if structure_of(found.design) == structure else []
         starts = [found] if not tried else []
         if not tried or has_systematic_misfit(found):
-            starts.append(selection.rich(found, np.inf))
+            starts.append(selection.rich(found, lambda _: True))
         for start in starts:
             try:
                 tried.append(searched(several, reshaped(start.design, structure), noise=GUESS_NOISE))
@@ -172,7 +181,7 @@ NOISE_QUANTILE = 1.645
 NEAR = 5e-5
 """largest distance, of the chord, from which rich structures get more control points where nothing is asked for."""
 LARGEST_OPEN = (4e-4, 8e-4)
-"""the same of a match, tried in turn: rich structures of blades stay as they are, as time bounds them."""
+"""the same of a match, tried in turn, and of blades, which take ten times as long: a match nearer than 5e-4 passes."""
 RICHER_GAIN = 0.6
 """ratio of the misfits of two rich structures above which a richer one is of no use: a third as many control points
 again bring a cubic spline nearer by (3/4)^4, a third (de Boor 1978, chapter 12)."""
@@ -180,12 +189,6 @@ MOST_FAILURES = 3
 """structures in a row that are searched and miss a tolerance, each half as far away as the last"""
 FIRST_SHARE = {2: 1.0, 3: 0.5}
 """share of the way to the fewest parameters that the first of these goes, by dimension: blades are less linear."""
-REWEIGHTINGS = 6
-"""searches of one structure with other weights at most"""
-REWEIGHTED_GAIN = 2.0
-"""ratio of the largest distances of least squares and of a search whose weights rise with them, at most."""
-HOPELESS = 0.9
-"""share of the excess over the tolerance from which other weights are given up"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -200,13 +203,23 @@ class _Selection:
         """The same with edge radii kept further from what is refused."""
         return replace(self, task=replace(self.task, margin_factor=REFUSED_MARGIN * self.task.margin_factor))
 
-    def rich(self, match: Match, near: float) -> Match:
-        """The match of a rich structure, and of ever richer ones until all points are as near as asked [m].
+    def holds(self, match: Match, tolerance: float) -> bool:
+        """Whether a match of the same structure is predicted to keep a tolerance [m] where points are weighed so."""
+        if match.maximum <= tolerance:
+            return True
+        model = self._model(match)
+        prediction, relative = model.prediction(model.counts), tolerance / model.chord
+        return prediction is not None and (
+            reweighted_prediction(model, prediction, relative).largest <= PREDICTED * relative
+        )
+
+    def rich(self, match: Match, enough: Callable[[Match], bool]) -> Match:
+        """The match of a rich structure, and of ever richer ones until one is near enough.
 
         It is the one before where a richer one has no shape, or comes hardly nearer.
         """
         found, widened = match, rich_structure
-        while found is match or (found.maximum > near and has_systematic_misfit(found)):
+        while found is match or (has_systematic_misfit(found) and not enough(found)):
             try:
                 structure = widened(found.design, len(self.task.points))
                 design = with_feasible_edges(reshaped(found.design, structure))
@@ -233,12 +246,15 @@ class _Selection:
                 return known[each.counts]
 
             shaped = filter(None, map(once, best_of_size(model, most)))
-            built = (each for each in islice(shaped, MOST_TRIED) if not (self.task.dimension == 3 and _refused(each)))
+            built = filter(self._is_built, islice(shaped, MOST_TRIED))
             nearest = min(islice(built, count), key=lambda each: each.misfit, default=None)
             if nearest is None or (best is not None and nearest.misfit >= best.misfit):
                 break
             best, about = nearest, self._widened(nearest)
         return best or min(filter(None, known.values()), key=lambda each: each.misfit, default=rich)
+
+    def _is_built(self, match: Match) -> bool:
+        return self.task.dimension == 2 or not _refused(match)
 
     def well_predicted(self, rich: Match) -> Match:
         """The match of fewest parameters that predicts points left out as well as any, and is well conditioned."""
@@ -258,23 +274,22 @@ class _Selection:
             if (error <= limit and each.largest <= near if has_systematic_misfit(rich) else each.rms <= noise)
         ] or candidates[:1]
         tried = (self._searched(model, each) for each in (chosen[-1], chosen[len(chosen) // 2], chosen[0]))
-        built = (each for each in tried if each and not (self.task.dimension == 3 and _refused(each)))
-        return next(built, rich)
+        return next((each for each in tried if each and self._is_built(each)), rich)
 
     def near_everywhere(self, rich: Match) -> Match:
         """The match that predicts well, or one with more parameters where it is far from some points."""
         found = self.well_predicted(rich)
         for share in LARGEST_OPEN:
-            if not has_systematic_misfit(found) or _largest(found, rich) <= share * found.model.chord:
+            if not has_systematic_misfit(found) or largest_of(found, rich) <= share * found.model.chord:
                 break
             nearer, _ = self.within(rich, share * found.model.chord)
-            if _largest(nearer, rich) < _largest(found, rich) and not _refused(nearer):
+            if largest_of(nearer, rich) < largest_of(found, rich) and not _refused(nearer):
                 found = nearer
         return found
 
     def within(self, rich: Match, tolerance: float) -> tuple[Match, str]:
         """The match of fewest parameters found that keeps a tolerance [m]; the nearest, and why, where none does."""
-        if _largest(rich, rich) > tolerance and not has_systematic_misfit(rich):
+        if largest_of(rich, rich) > tolerance and not has_systematic_misfit(rich):
             return self.well_predicted(rich), NOISE_REASON.format(1e3 * rich.noise_estimate.noise)
         best, nearest, about, wide = None, rich, rich, False
         share, failed, missed, selection = FIRST_SHARE[self.task.dimension], 0, 0, self
@@ -284,7 +299,8 @@ class _Selection:
             fewer = eliminated(model, 0, relative)
             kept = [each for each in fewer if each.largest <= PREDICTED * relative and each.parameters > missed]
             if best is not None:
-                kept = [each for each in kept if each.parameters < len(best.problem.paths)]
+                narrower = [each for each in fewer if missed < each.parameters < len(best.problem.paths)]
+                kept = [each for each in narrower if each in kept] or narrower[:1]
             elif not kept and not wide:
                 about, wide = self._widened(about), True
                 continue
@@ -294,17 +310,17 @@ class _Selection:
                 break
             tried = kept[int(np.ceil(share * len(kept))) - 1]
             start = selection._start(model, tried)
-            found = None if start is None else selection._reweighted_search(start, tried, rich, tolerance)
-            if found is not None and _largest(found, rich) <= tolerance:
+            found = None if start is None else nearest_to_tolerance(selection.task, start, tried, rich, tolerance)
+            if found is not None and largest_of(found, rich) <= tolerance:
                 about = found
-                if self.task.dimension == 3 and _refused(found):
+                if not self._is_built(found):
                     selection, failed = selection.with_margin(), failed + 1
                     continue
                 best = found
                 share, failed, missed = min(1.0, 1.5 * share), 0, 0
                 continue
             share, failed, missed = 0.5 * share, failed + 1, tried.parameters
-            if best is None and found is not None and _largest(found, rich) < HOPELESS * _largest(about, rich):
+            if best is None and found is not None and largest_of(found, rich) < largest_of(about, rich):
                 if found.noise_estimate.correlation < NOISE_CORRELATION:
                     return self.well_predicted(rich), NOISE_REASON.format(1e3 * found.noise_estimate.noise)
                 nearest, about, wide, failed, missed = found, self._widened(found), True, 0, 0
@@ -328,11 +344,13 @@ class _Selection:
         if start is None:
             return None
         try:
-            return searched(self.task, start, rounds=QUICK_ROUNDS, noise=prediction.rms, min_reduction=ROUGH_REDUCTION)
+            return searched(
+                self.task, start.design, rounds=QUICK_ROUNDS, noise=prediction.rms, min_reduction=ROUGH_REDUCTION
+            )
         except (FitError, DesignError):
             return None
 
-    def _start(self, model: LinearModel, prediction: Prediction) -> Design | None:
+    def _start(self, model: LinearModel, prediction: Prediction) -> Match | None:
         """The predicted design or the one nearest to the rich match, as far from that predictions go too far."""
         found: Match | None = None
         for change in (prediction.change, np.zeros_like(prediction.change)):
@@ -342,42 +360,9 @@ class _Selection:
             except (DesignError, FitError):
                 continue
             found = fresh if found is None or fresh.misfit < found.misfit else found
-        return None if found is None else found.design
-
-    def _reweighted_search(self, design: Design, prediction: Prediction, rich: Match, tolerance: float) -> Match | None:
-        best, noise = None, prediction.rms
-        weights = np.where(prediction.weights > 0.0, prediction.weights, self.task.weights)
-        for _ in range(REWEIGHTINGS):
-            weighted = replace(self.task, weights=weights * (np.sum(self.task.weights) / np.sum(weights)))
-            try:
-                found = searched(weighted, design, noise=noise, rounds=1, min_reduction=ROUGH_REDUCTION)
-            except (FitError, DesignError):
+            if found.misfit < LARGEST_PREDICTED * prediction.rms:
                 break
-            before, now = np.inf if best is None else _largest(best, rich), _largest(found, rich)
-            best = found if now < before else best
-            if now <= tolerance or now - tolerance > HOPELESS * (before - tolerance):
-                break
-            design, noise = found.design, found.rms
-            weights = reweighted(weights, found.state.footpoints.distances, tolerance)
-        return best
-
-
-def _largest(match: Match, rich: Match) -> float:
-    """The largest distance [m] of the points that took part in a rich match: ends that drew back leave none out."""
-    return float(np.max(match.state.footpoints.distances[rich.rows]))
-
-
-def _confirmed(task: Task, match: Match, tolerance: float) -> Match:
-    """A match of some of the points that keeps a tolerance at more of them, by their weights."""
-    found = match
-    for _ in range(REWEIGHTINGS):
-        found = searched(task, found.design, noise=match.rms, rounds=0)
-        if found.maximum <= tolerance:
-            break
-        weights = reweighted(task.weights, found.state.footpoints.distances, tolerance)
-        task = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
-        found = searched(task, found.design, noise=match.rms, rounds=1, min_reduction=ROUGH_REDUCTION)
-    return found
+        return found
 
 
 def _refused(match: Match) -> bool:

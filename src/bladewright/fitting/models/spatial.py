@@ -3,6 +3,7 @@
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 
@@ -45,7 +46,13 @@ class SpatialModel(Model):
         rates = np.empty((len(footpoints.u), len(steps)))
         for number, (side, net) in enumerate(zip(shape.sides, nets, strict=True)):
             rows = np.flatnonzero(footpoints.side == number)
-            on = Surface(control_points=net[0], knots_u=side.knots_u, knots_v=knots.v, degree_u=DEGREE, degree_v=DEGREE)
+            on = Surface(
+                control_points=net[0],
+                knots_u=cast(Surface, side).knots_u,
+                knots_v=knots.v,
+                degree_u=DEGREE,
+                degree_v=DEGREE,
+            )
             matrix = collocation(on, footpoints.u[rows], footpoints.v[rows])
             columns = np.moveaxis(net, 0, 2).reshape(matrix.shape[1], -1)
             moved = (matrix @ columns).reshape(len(rows), len(steps), 3)
