@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import bladewright as bw
-from bladewright.fitting.assessment.foreign_edges import _face
+from bladewright.fitting.assessment.foreign_edges import _arc, _face
 from machines import example
 from machines.sections import EXAMPLES
 
@@ -46,3 +46,15 @@ def test_a_face_between_straight_sides_is_found_wherever_it_is_turned(width):
     found, left = _face(along + 3.0, height - 1.0)
     assert found == pytest.approx(width, abs=2e-3)
     assert left < 1e-6
+
+
+@pytest.mark.parametrize("radius", [0.3, 1.0])
+def test_an_arc_between_its_tangents_is_found(radius):
+    turn, behind = np.array([0.3, -0.05]), np.linspace(0.0, 3.0, 12)
+    angles = np.linspace(-0.5 * np.pi + turn[1], 0.5 * np.pi - turn[0], 9)
+    points = [radius * np.stack([np.cos(angles), np.sin(angles)], axis=-1)]
+    for sign, angle in zip((1.0, -1.0), turn, strict=True):
+        normal, back = np.array([np.sin(angle), sign * np.cos(angle)]), np.array([-np.cos(angle), sign * np.sin(angle)])
+        points.append(radius * normal + behind[:, None] * back)
+    found = np.concatenate(points)
+    assert _arc(found[:, 0] + 3.0, found[:, 1] - 1.0) < 1e-12

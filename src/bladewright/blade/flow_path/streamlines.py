@@ -126,9 +126,10 @@ class StreamLines:
         for _ in range(30):
             panel = self._panel(u)
             local = self._local(panel, u)
-            miss = _clenshaw(_rows_of(self.series, panel), local) + _of(self.starts, panel) - abscissa
-            step = miss / _clenshaw(_rows_of(self.density, panel), local)
-            u = u - step
+            with np.errstate(all="ignore"):  # where it diverges
+                miss = _clenshaw(_rows_of(self.series, panel), local) + _of(self.starts, panel) - abscissa
+                step = miss / _clenshaw(_rows_of(self.density, panel), local)
+                u = u - step
             if np.max(np.abs(step), initial=0.0) < CONVERGED:  # real: a stopping rule
                 return u
         raise DesignError(

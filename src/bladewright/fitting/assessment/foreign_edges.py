@@ -15,8 +15,8 @@ REACH = 8.0
 sides, which are straight so far [-]"""
 INSIDE = 0.05
 """distance from an edge, in u, at which the sides show the direction across it [-]"""
-UNKNOWNS = 6
-"""place, half width and turn of a face, and the slopes of both sides"""
+UNKNOWNS, ROUND_UNKNOWNS = 6, 5
+"""place, half width and turn of a face, and the slopes of both sides; place and radius of an arc, and these slopes"""
 CONFIDENCE = 0.999
 """with which points are nearer to a face than to a round edge: by the ratio of their variances (Fisher 1925) [-]"""
 
@@ -25,7 +25,8 @@ def foreign_edges(match: Match) -> dict[str, float]:
     """Edges of designs with round ones where points lie on a straight face, or on two straight sides: its width [m].
 
     A face and both sides beside it are fitted to the points about the edge, across and along the camber line there. It
-    is taken for the cloud's where it leaves clearly less of the distances than the design.
+    is taken for the cloud's where it leaves clearly less of the distances than the design, and than an arc and its
+    tangents that are fitted in the same way.
     """
     if not match.model.rounded:
         return {}
@@ -45,9 +46,10 @@ def foreign_edges(match: Match) -> dict[str, float]:
         if len(rows) <= 2 * UNKNOWNS:
             continue
         width, left = _face(along[rows], height[rows])
+        own, arc = float(np.sum(feet.distances[rows] ** 2)), _arc(along[rows], height[rows])
         free = len(rows) - UNKNOWNS
-        ratio = float(np.mean(feet.distances[rows] ** 2)) / max(left / free, 1e-300)
-        if ratio > fdtri(len(rows), free, CONFIDENCE):
+        others = (own, len(rows)), (arc, len(rows) - ROUND_UNKNOWNS)
+        if all(other / count * free > fdtri(count, free, CONFIDENCE) * left for other, count in others):
             found[name] = width
     return found
 
@@ -85,3 +87,21 @@ def _face(along: Reals, height: Reals) -> tuple[float, float]:
     fits = [least_squares(distances, start, bounds=(low, most), x_scale=scale) for start in starts]
     best = min(fits, key=lambda each: float(each.cost))
     return 2.0 * float(best.x[2]), 2.0 * float(best.cost)
+
+
+def _arc(along: Reals, height: Reals) -> float:
+    """The sum of squared distances of points (n,) from the arc with two tangents that is nearest to them."""
+    wide = 0.5 * float(np.ptp(height))
+
+    def distances(unknowns: Reals) -> Reals:
+        end, middle, radius, *angles = unknowns
+        ahead, off = along - end + radius, height - middle
+        angle = np.where(off > 0.0, *angles)
+        behind = np.abs(off) * np.sin(angle) - ahead * np.cos(angle)
+        above = ahead * np.sin(angle) + np.abs(off) * np.cos(angle)
+        return np.asarray(np.where(behind < 0.0, np.hypot(ahead, off), above) - radius)
+
+    scale, most = np.array([wide, wide, wide, 1.0, 1.0]), np.array([np.inf, np.inf, np.inf, 1.0, 1.0])
+    low = np.where(np.arange(ROUND_UNKNOWNS) == 2, 0.0, -most)
+    starts = [(float(np.max(along)), float(np.mean(height)), share * wide, 0.1, 0.1) for share in (0.9, 0.5, 0.1)]
+    return 2.0 * min(float(least_squares(distances, each, bounds=(low, most), x_scale=scale).cost) for each in starts)
