@@ -16,6 +16,7 @@ INTERRUPTED = """
 import signal, sys
 from bladewright.cli import main
 import bladewright.fitting.fit  # the moments count from the call
+signal.signal(signal.SIGINT, signal.default_int_handler)  # which a background job of a shell ignores
 signal.signal(signal.SIGPROF, lambda *_: signal.raise_signal(signal.SIGINT))
 for moment in sys.argv[1:]:
     signal.setitimer(signal.ITIMER_PROF, float(moment))
