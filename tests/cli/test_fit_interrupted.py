@@ -27,7 +27,7 @@ for moment in sys.argv[1:]:
 
 @pytest.fixture(scope="module")
 def interrupted(tmp_path_factory):
-    """The directory in which fits were interrupted, and their exit statuses."""
+    """The directory in which fits were interrupted, their exit statuses, and what was printed."""
     folder, random = tmp_path_factory.mktemp("interrupted"), np.random.default_rng(0)
     stator = example("compressor-stator").changed("tolerance", COARSE)
     points = np.concatenate([side(*random.random((2, 200))) for side in built(stator).sides])
@@ -35,13 +35,13 @@ def interrupted(tmp_path_factory):
     bw.write_design(stator.changed("stagger[0]", stator.stagger[0] + 3.0), folder / "start.toml")
     words = [sys.executable, "-c", INTERRUPTED, *map(str, MOMENTS)]
     done = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=True, timeout=300)
-    return folder, dict(zip(MOMENTS, map(int, done.stdout.split()), strict=True))
+    return folder, dict(zip(MOMENTS, map(int, done.stdout.split()), strict=True)), done.stderr
 
 
 @pytest.mark.parametrize("moment", MOMENTS)
 def test_the_best_design_so_far_is_written_with_its_report_or_nothing_is(moment, interrupted):
-    folder, statuses = interrupted
-    assert statuses[moment] == 130
+    folder, statuses, printed = interrupted
+    assert statuses[moment] == 130, printed
     found = sorted(path.name for path in folder.glob(f"at-{moment}*"))
     assert found in ([], [f"at-{moment}.fit.json", f"at-{moment}.toml"])
     if found:

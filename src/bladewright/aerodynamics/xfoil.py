@@ -114,9 +114,11 @@ def _run(
         coordinates = (f"{x:.12f} {y:.12f}" for x, y in airfoil.points)
         (folder / "airfoil.dat").write_text("\n".join(["airfoil", *coordinates, ""]))
         (folder / "script.txt").write_text(_script(angles, conditions))
+        cured = untrapped.built()
         status = _ended(program, folder, min(end, hung))
-        if status in TRAPPED and not untrapped.built():
-            untrapped.build_library()
+        if status in TRAPPED and not cured:
+            if not untrapped.built():  # by another process, in the meantime
+                untrapped.build_library()
             status = _ended(program, folder, min(end, hung))
         version, points = read_polar_dump(folder / "dump.bin")
         if status is None and hung < end:
