@@ -44,6 +44,7 @@ def fit_of(design, cloud, **changes):
         "deviations": np.minimum(feet["upper"].distances, feet["lower"].distances),
         "regions": regions,
         "inliers": np.ones(len(cloud), dtype=bool),
+        "set_aside": np.full(len(cloud), ""),
         "estimates": (
             Estimate(
                 path="stagger", value=design.stagger, deviation=0.1, low=-60, high=-50, identified=True, at_bound=False

@@ -18,7 +18,7 @@ SPAN = 0.11
 """[m]"""
 
 
-def ends_of(*rows, free="channel.leading_edge[0].r", noise=0.0):
+def ends_of(*rows, free="channel.leading_edge[*].r", noise=0.0):
     """The loose ends of a match of 400 points at random and of rows of 20 at some places along the span."""
     draw, sides = np.random.default_rng(0), STATOR.build().sides
     parts = [side(*draw.random((2, 200))) for side in sides]

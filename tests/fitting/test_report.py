@@ -47,6 +47,7 @@ def made(deviations, regions, inliers, **changed):
         deviations=np.array(deviations),
         regions=np.array(regions),
         inliers=np.array(inliers),
+        set_aside=np.full(len(inliers), ""),
         estimates=ESTIMATES,
         covariance=np.diag([1e-4, 1e-4, math.inf]),
         rank=2,

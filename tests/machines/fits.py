@@ -36,6 +36,7 @@ def made(kind, count=400, noise=1e-5, outliers=0.02, **changed):
         deviations=deviations,
         regions=np.where(u < 0.05, "leading edge", np.where(u > 0.95, "trailing edge", "sides")),
         inliers=inliers,
+        set_aside=np.full(count, ""),
         estimates=(
             Estimate(path="stagger", value=1.0, deviation=0.1, low=0.8, high=1.2, identified=True, at_bound=False),
         ),

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.blade.native.extrema import extrema_of
@@ -19,12 +19,14 @@ from bladewright.fitting.assessment.estimates import parameter_estimates
 from bladewright.fitting.assessment.measurement import measured
 from bladewright.fitting.assessment.result import Fit, Motion
 from bladewright.fitting.clouds.cloud import checked_cloud, refuse_several_blades
+from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.design_header import DesignHeader, Unit
 from bladewright.fitting.families.blades import matched_blade
 from bladewright.fitting.families.kinds import FAMILIES, FitFamily, family_of
 from bladewright.fitting.families.sections import matched_section
 from bladewright.fitting.families.unified import matched_unified
-from bladewright.fitting.free_parameters import free_parameters_of
+from bladewright.fitting.finishing import Finishing, without_finishing
+from bladewright.fitting.free_parameters import FreeParameters, free_parameters_of
 from bladewright.fitting.initial_guess.arrangement import spans_along_y
 from bladewright.fitting.matching.search import COARSEST_TOLERANCE, Match, Task
 from bladewright.fitting.model_selection.match_target import MatchTarget
@@ -101,7 +103,8 @@ def fit(
     `align` they may lie anywhere: they are registered onto `start`, or taken for a prismatic blade of a linear cascade.
     No guess is needed; `start` is one, whose structure is kept unless `tolerance` [m] or `parameters` ask for
     another. `like` is a design whose structure is taken, not its values; the flow path of a blade from sections is part
-    of it. Without any of these, control points are added as long as the cloud shows that
+    of it. Either's cuts and fillets are kept: the blade before them is matched, and points on them are `set_aside`; a
+    `like` that has some is the start. Without any of these, control points are added as long as the cloud shows that
     more are needed; with `tolerance`, until no inlier lies further away; with `parameters`, up to that number of free
     ones.
 
@@ -117,6 +120,7 @@ def fit(
     points, notes = checked_cloud(cloud)
     kind = named_family(family, points.shape[1], start if start is not None else like)
     _check_call(points, kind, start, like, tolerance, parameters)
+    finishing, start, like = without_finishing(start, like, name)
     header = DesignHeader(
         name=name, length_unit=length_unit, pitch=pitch, arrangement=arrangement, blade_count=blade_count
     )
@@ -138,7 +142,7 @@ def fit(
         points, notes = UPRIGHT(points), (*notes, UPRIGHT_NOTE)
     refuse_several_blades(points)
     free_parameters = free_parameters_of(free, fixed, started=start is not None)
-    task = Task(
+    task = every = Task(
         points=points,
         weights=_weights(weights, len(points)),
         free=free_parameters,
@@ -148,14 +152,12 @@ def fit(
     )
     structured = parameters is None and (start is not None or like is not None)
     target = MatchTarget(tolerance=tolerance, parameters=parameters, structured=structured)
+    hidden = None
     try:
-        if kind is None:
-            found, built, reason = matched_unified(task, start, like, header, target)
-        else:
-            first = None if start is None else free_parameters.applied(start)
-            matched = matched_section if points.shape[1] == 2 else matched_blade
-            found, reason = matched(task, kind, first, like, header, target)
-            built = _built(found)
+        if finishing is not None and start is not None:
+            hidden = finishing.hides(points, start)
+            task = finishing.shown(task, free_parameters, hidden)
+        found, built, reason = _matched(task, kind, start, like, header, target)
     except KeyboardInterrupt:
         nearest = task.best_so_far.built()
         if nearest is None:
@@ -163,8 +165,8 @@ def fit(
         found, built, reason = *nearest, INTERRUPTED_NOTE if points.shape[1] == 3 else ""
         if len(points) > INTERRUPTED_POINTS:
             notes = (*notes, f"measured by {INTERRUPTED_POINTS} of {len(points)} points, drawn at random")
-            task = task.thinned(INTERRUPTED_POINTS)
-            points = task.points
+            rows = random_subset(len(points), INTERRUPTED_POINTS)
+            every, hidden = every.part(rows), None if hidden is None else hidden[rows]
     except DesignError as error:
         raise FitError(f"no design of the family was found near the points ({error}): {WHOLE_BLADE_HINT}") from error
     if (
@@ -174,7 +176,8 @@ def fit(
         and getattr(found.design, "arrangement", "") == "linear"
     ):
         notes = (*notes, CASCADE_NOTE)
-    return _reported(found, built, points, task, target, (*notes, *([reason] if reason else [])), motion)
+    notes = (*notes, *([reason] if reason else []))
+    return _reported(found, built, every, target, notes, motion, finishing, hidden)
 
 
 def named_family(family: str, dimension: int, given: Design | None = None) -> FitFamily | None:
@@ -213,11 +216,6 @@ def _check_call(
                 f"{kind.__name__}{'' if family is None else f' of the family {family.name}'}: give such a design, "
                 f"or {'points of the other kind' if family is None else 'another family'}"
             )
-        if design is not None and design.plain is not design:
-            raise FitError(
-                f"{label} has a cut or fillets, and a fit matches the blade before them: leave them and the points on "
-                "their faces out, and put them into the design that is found"
-            )
     _check_flow_path(start, like, resized=tolerance is not None or count is not None)
     if tolerance is not None and not 0.0 < tolerance < np.inf:
         raise FitError(f"tolerance is {tolerance!r}: a positive length in metres is needed, such as 5e-5")
@@ -242,6 +240,24 @@ def _check_flow_path(start: Design | None, like: Design | None, *, resized: bool
         )
 
 
+def _matched(
+    task: Task,
+    kind: FitFamily | None,
+    start: Design | None,
+    like: Design | None,
+    header: DesignHeader,
+    target: MatchTarget,
+) -> tuple[Match, Any, str]:
+    """The match of a family, what it builds, and why it ends where no target is met."""
+    if kind is None:
+        return matched_unified(task, start, like, header, target)
+    free = task.free
+    first = free.applied(start) if start is not None and isinstance(free, FreeParameters) else start
+    matched = matched_section if task.dimension == 2 else matched_blade
+    found, reason = matched(task, kind, first, like, header, target)
+    return found, _built(found), reason
+
+
 def _built(match: Match) -> Any:
     """What a design of a family that is one part builds."""
     try:
@@ -264,29 +280,46 @@ def _weights(weights: ArrayLike | None, count: int) -> Reals:
 
 
 def _reported(
-    match: Match, built: Any, points: Reals, task: Task, target: MatchTarget, notes: tuple[str, ...], motion: Any
+    match: Match,
+    plain: Any,
+    task: Task,
+    target: MatchTarget,
+    notes: tuple[str, ...],
+    motion: Motion | None,
+    finishing: Finishing | None,
+    hidden: NDArray[np.bool_] | None,
 ) -> Fit:
     task.progress("measuring")
-    measurement = measured(points, built, task.precision)
+    design, built, failures = match.design, plain, list[str]()
+    if finishing is not None:
+        try:
+            finished = finishing.given_to(match.design)
+            built, design = finished.build(), finished
+        except DesignError as error:
+            failures.append(f"what is found cannot be cut or filleted as is given, and is left without: {error}")
+    measurement = measured(
+        task.points, plain, task.precision, hidden=hidden, finished=None if built is plain else built
+    )
     statistics = parameter_estimates(match)
     return Fit(
-        design=match.design,
+        design=design,
         built=built,
-        cloud=points,
+        cloud=task.points,
         places=measurement.places,
         u=measurement.footpoints.u,
         v=measurement.footpoints.v,
         deviations=measurement.deviations,
         regions=measurement.regions,
         inliers=measurement.inliers,
+        set_aside=measurement.set_aside,
         estimates=statistics.estimates,
         covariance=statistics.covariance,
         rank=statistics.rank,
         condition=statistics.condition,
         noise=measurement.noise_estimate.noise,
-        extrema=_extrema(built),
+        extrema=_extrema(plain),
         tolerance=target.tolerance,
-        failures=failures_of(measurement, statistics, match, target),
+        failures=(*failures_of(measurement, statistics, match, target), *failures),
         notes=notes_of(notes, measurement, statistics, match, target),
         evaluations=match.evaluations,
         motion=motion,

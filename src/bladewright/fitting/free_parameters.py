@@ -136,6 +136,8 @@ class FreeParameters:
     values: Mapping[str, float] | None = None
     walls: bool = False
     """whether hub and shroud of a blade from sections are free too"""
+    unseen: frozenset[str] = frozenset()
+    """edges and walls that are cut off or behind fillets: they are held"""
 
     def __call__(self, design: Design) -> tuple[str, ...]:
         """The free parameters of a design; raises FitError where there are none."""
@@ -148,6 +150,7 @@ class FreeParameters:
             held |= gauge_parameters(design, walls=self.walls) | {
                 path for path in wanted if path.startswith(NOT_IN_CLOUD)
             }
+        held |= {path for place in self.unseen for path in parameters_of_curve(design, place)}
         found = tuple(path for path in wanted if path not in held)
         if not found:
             raise FitError("no parameter is left to fit: free at least one, or fix fewer")
@@ -182,3 +185,14 @@ def corner_radii(design: Design) -> tuple[str, ...]:
         return ()
     last = {edge: len(getattr(design.channel, edge)) - 1 for edge in ("leading_edge", "trailing_edge")}
     return tuple(f"channel.{edge}[{place}].r" for edge, end in last.items() for place in (0, end))
+
+
+def parameters_of_curve(design: Design, name: str) -> frozenset[str]:
+    """Paths of the parameters of an edge or a wall of a blade; of a channel's corners, across the wall."""
+    paths = [p for p in design.parameters() if p.startswith((f"channel.{name}", f"flow_path.{name}", f"{name}."))]
+    if isinstance(design, UnifiedBlade) and name in WALLS:
+        corners = {edge: getattr(design.channel, edge)[-WALLS.index(name)] for edge in EDGES}
+        across = "r" if _longer(np.array([tuple(each) for each in corners.values()])) == "x" else "x"
+        last = {edge: WALLS.index(name) * (len(getattr(design.channel, edge)) - 1) for edge in EDGES}
+        paths += [f"channel.{edge}[{place}].{across}" for edge, place in last.items()]
+    return frozenset(paths)

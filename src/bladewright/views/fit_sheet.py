@@ -110,7 +110,7 @@ def _section_sheet(fit: FitResult) -> Figure:
 
 
 def _header(fit: FitResult) -> list[str]:
-    outliers = len(fit.inliers) - int(np.count_nonzero(fit.inliers))
+    outliers = len(fit.outliers)
     header = [
         "passed" if fit.passed else "NOT PASSED",
         f"{count_of(len(fit.cloud), 'point')}, {count_of(outliers, 'outlier')}",

@@ -49,7 +49,7 @@ def failures_of(
     failures = []
     if match.interrupted:
         failures.append("the search was interrupted: this is the best design so far")
-    off = int(np.count_nonzero(~inliers & ~measurement.faced))
+    off = measurement.outliers - int(np.count_nonzero(measurement.faced))
     if off > LARGEST_OUTLIER_SHARE * len(distances):
         failures.append(f"{off} of {len(distances)} points lie off the blade: is it one blade, and of this family?")
     worst = int(np.flatnonzero(inliers)[np.argmax(distances[inliers])])
@@ -152,8 +152,7 @@ def notes_of(
     sentences = list(notes)
     if faced:
         sentences.append(
-            f"{faced} of {np.count_nonzero(~measurement.inliers)} outliers lie on the end faces: the sides are met "
-            "without them"
+            f"{faced} of {measurement.outliers} outliers lie on the end faces: the sides are met without them"
         )
     if target.open and EXACT * chord < np.max(kept) <= NEAR_EVERYWHERE * chord and _is_systematic(match):
         sentences.append(f"near enough to make, but {_not_found_message(match)}")

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from bladewright.fitting.free_parameters import parameters_of_curve
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS
 from bladewright.fitting.matching.footpoints import Footpoints, Side, footpoints_at
 from bladewright.fitting.matching.search import Match
@@ -29,6 +30,8 @@ def loose_ends(match: Match) -> dict[str, float]:
     loose = {}
     for name in END_PARAMETERS:
         wall = walls.get(name)
+        if not parameters_of_curve(match.design, name) & {*match.problem.paths}:
+            continue
         if wall is None:
             loose[name] = chord
         elif wall.spread > max(ROW_SPREAD * chord, ROW_SPREAD_OF_NOISE * match.noise_estimate.noise):
@@ -57,7 +60,7 @@ def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:
     uncovered = {}
     for name, end in EDGE_PARAMETERS.items():
         nearest = _nearest(footpoints, match.rows, end)
-        if len(nearest) == 0:
+        if len(nearest) == 0 or not match.problem.cloud_residuals.overhang.looks_at(end):
             continue
         side, u, v = footpoints.side[nearest], footpoints.u[nearest], footpoints.v[nearest]
         near_end, tip, across = (

@@ -1,7 +1,7 @@
 """The final measurement of a match: every point of the cloud against what the design builds."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from bladewright.blade.native.blade import Blade
 from bladewright.fitting.assessment.deviation import REGIONS
+from bladewright.fitting.assessment.finished_faces import off_finished_faces
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS, WallPoints, blade_ends_of
 from bladewright.fitting.matching.footpoints import Footpoints, Side, nearest_footpoints
 from bladewright.fitting.matching.noise import NoiseEstimate, noise_of
@@ -37,6 +38,8 @@ class Measurement:
     noise_estimate: NoiseEstimate
     faced: NDArray[np.bool_]
     """(n,) whether an outlier lies on an end face, as the points of a solid's faces do"""
+    set_aside: NDArray[np.str_]
+    """(n,) what a point lies on that is none of the sides, such as `hub fillet`; empty where it takes part"""
 
     @property
     def distances(self) -> Reals:
@@ -45,8 +48,13 @@ class Measurement:
 
     @property
     def inliers(self) -> NDArray[np.bool_]:
-        """(n,) whether a point takes part; the others are outliers."""
+        """(n,) whether a point takes part; the others are outliers, or set aside."""
         return self.noise_estimate.inliers
+
+    @property
+    def outliers(self) -> int:
+        """Number of the points that are outliers."""
+        return int(np.count_nonzero(~self.inliers & (self.set_aside == "")))
 
     @property
     def dimension(self) -> int:
@@ -54,22 +62,35 @@ class Measurement:
         return int(self.footpoints.points.shape[1])
 
 
-def measured(points: Reals, built: Blade | Section, precision: Reals | None = None) -> Measurement:
-    """Every point's nearest place and signed distance on a blade or section.
+def measured(
+    points: Reals,
+    built: Blade | Section,
+    precision: Reals | None = None,
+    *,
+    hidden: NDArray[np.bool_] | None = None,
+    finished: Blade | None = None,
+) -> Measurement:
+    """Every point's nearest place and signed distance on a blade or section, before cuts and fillets.
 
-    `precision` (n,) are inverse variances of the points, relative to each other.
+    `precision` (n,) are inverse variances of the points, relative to each other. Those `hidden` (n,) of the points that
+    are nearer to a face of a cut, a fillet or a wall of the `finished` blade are set aside.
     """
     sides = sides_of(built)
     exact = built.exact if isinstance(built, Blade) else None
     footpoints = _nearest(points, sides)
-    noise_estimate = noise_of(points, footpoints, precision)
+    set_aside, off = np.full(len(points), "", dtype="<U32"), footpoints.distances
+    if hidden is not None and finished is not None and np.any(hidden):
+        names, far = off_finished_faces(points[hidden], finished)
+        set_aside[hidden] = np.where(far < off[hidden], names, "")
+        off[hidden] = np.minimum(far, off[hidden])
+    noise_estimate = _noise_without(points, footpoints, precision, set_aside == "")
     shape = ModelShape(design=None, sides=sides, edge_radius_margins=np.zeros(0), exact=exact)
     ends = blade_ends_of(points, footpoints, shape, noise_estimate.inliers)
     # points of end faces, few and far inside the sides, are outliers to these
-    faced = ~noise_estimate.inliers
+    faced = ~noise_estimate.inliers & (set_aside == "")
     if np.any(faced):
         faced &= blade_ends_of(points, footpoints, shape, np.ones(len(points), dtype=bool)).on_end_face
-    deviations = np.where(footpoints.heights < 0.0, -1.0, 1.0) * footpoints.distances
+    deviations = np.where(footpoints.heights < 0.0, -1.0, 1.0) * off
     places = np.array(["upper", "lower"], dtype="<U13")[footpoints.side]
     edge = np.where(
         footpoints.u < EDGE_REGION, "leading edge", np.where(footpoints.u > 1.0 - EDGE_REGION, "trailing edge", "sides")
@@ -79,6 +100,7 @@ def measured(points: Reals, built: Blade | Section, precision: Reals | None = No
         footpoints, faces = on_sides(footpoints, edges)
         for side, name in ((-1, "leading_edge"), (1, "trailing_edge")):
             places = np.where(faces == side, name, places)
+    places = np.where(set_aside == "", places, set_aside)
     past = np.any(footpoints.beyond != 0.0, axis=1) & (
         np.abs(np.sum(footpoints.miss * footpoints.beyond, axis=1)) > np.abs(footpoints.heights)
     )
@@ -92,7 +114,19 @@ def measured(points: Reals, built: Blade | Section, precision: Reals | None = No
         regions=regions,
         noise_estimate=noise_estimate,
         faced=faced,
+        set_aside=set_aside,
     )
+
+
+def _noise_without(
+    points: Reals, footpoints: Footpoints, precision: Reals | None, taking_part: NDArray[np.bool_]
+) -> NoiseEstimate:
+    """The noise estimate of the points that take part, of which alone there are inliers."""
+    rows = np.flatnonzero(taking_part)
+    found = noise_of(points[rows], footpoints.part(rows), None if precision is None else precision[rows])
+    inliers = np.zeros(len(points), dtype=bool)
+    inliers[rows] = found.inliers
+    return replace(found, inliers=inliers)
 
 
 def _nearest(points: Reals, sides: Sequence[Side]) -> Footpoints:

@@ -37,6 +37,7 @@ def report(fit: Fit) -> dict[str, Any]:
         "points": len(fit.cloud),
         "inliers": int(np.count_nonzero(fit.inliers)),
         "outliers": _outliers(fit),
+        "set_aside": {kind: _figures(each, chord) for kind, each in fit.by_kind_set_aside.items()},
         "chord_m": plain(chord),
         "tolerance_m": plain(fit.tolerance),
         "tolerance_mm": plain(None if fit.tolerance is None else fit.tolerance * MILLIMETRES),

@@ -74,7 +74,9 @@ class Fit(FrozenRecord, Shown):
     regions: NDArray[np.str_]
     """(n,) region of each point: `sides`, `leading edge`, `trailing edge` or `ends`"""
     inliers: NDArray[np.bool_]
-    """(n,) whether a point took part; the others are outliers"""
+    """(n,) whether a point took part; the others are outliers, or set aside"""
+    set_aside: NDArray[np.str_]
+    """(n,) what a point lies on that is none of the sides, such as `hub fillet`; empty where it took part"""
     estimates: tuple[Estimate, ...]
     """the free parameters"""
     covariance: Reals
@@ -119,6 +121,12 @@ class Fit(FrozenRecord, Shown):
         """Of the inliers of each region."""
         return by_region(self.distances[self.inliers], self.regions[self.inliers])
 
+    @cached_property
+    def by_kind_set_aside(self) -> dict[str, Deviation]:
+        """Of the points that are set aside, by what they lie on."""
+        kinds = np.unique(self.set_aside[self.set_aside != ""])
+        return {str(kind): deviation_of(self.distances[self.set_aside == kind]) for kind in kinds}
+
     @property
     def mean(self) -> float:
         """Mean distance of the inliers [m]."""
@@ -137,7 +145,7 @@ class Fit(FrozenRecord, Shown):
     @property
     def outliers(self) -> NDArray[np.intp]:
         """Indices of the points that are outliers."""
-        return np.flatnonzero(~self.inliers)
+        return np.flatnonzero(~self.inliers & (self.set_aside == ""))
 
     @property
     def unidentified(self) -> tuple[str, ...]:

@@ -32,7 +32,7 @@ def text(fit: Fit) -> str:
     if fit.tolerance is not None:
         limits.insert(0, f"tolerance {with_unit(fit.design, fit.tolerance)}")
     lines.append(f"  {', '.join(limits)}, chord {with_unit(fit.design, fit.chord, 6)}")
-    lines += [f"  {line}" for line in (_outliers_line(fit), _motion_line(fit)) if line]
+    lines += [f"  {line}" for line in (_outliers_line(fit), _set_aside_line(fit), _motion_line(fit)) if line]
     waves = ", ".join(f"{count} on the {name} side" for name, count in fit.extrema.items())
     lines += [f"  extrema of curvature: {waves}"] if waves else []
     lines.append(
@@ -72,6 +72,14 @@ def _outliers_line(fit: Fit) -> str:
     return (
         f"{_number_of(total, 'point')}, {_number_of(count, 'outlier')} ({share}) up to {farthest} away: number {shown}"
     )
+
+
+def _set_aside_line(fit: Fit) -> str:
+    kinds = fit.by_kind_set_aside
+    named = ", ".join(
+        f"{each.count} on the {kind} (up to {with_unit(fit.design, each.maximum)} away)" for kind, each in kinds.items()
+    )
+    return f"set aside: {named}" if kinds else ""
 
 
 def _motion_line(fit: Fit) -> str:

@@ -3,7 +3,7 @@
 Without this limit an edge that sticks out as a thin fin costs nothing, as it is nobody's nearest place.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,6 +28,9 @@ ALLOWED_SPACINGS, ALLOWED_SPACINGS_EXACT = 1.5, 15.0
 where the true edge must cost nothing even by chance: it had cost 2.4e-3 of the chord on an impeller and on Rotor 67
 (design/fit_made.md)."""
 
+EDGE_ENDS = {"leading_edge": 0.0, "trailing_edge": 1.0}
+"""u of both edges"""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EdgeOverhang:
@@ -42,6 +45,10 @@ class EdgeOverhang:
     allowed: Reals
     """(m,) overhang that costs nothing [m]; infinite where the cloud does not show the edge"""
 
+    def looks_at(self, u: float) -> bool:
+        """Whether the cloud shows the edge at u."""
+        return bool(np.any(np.isfinite(self.allowed[self.u == u])))
+
     def edges(self, sides: Sequence[Side]) -> Footpoints:
         """The places on the edges beside the points, as footpoints."""
         return footpoints_at(self.points, sides, np.zeros(len(self.u), dtype=np.intp), self.u, self.v)
@@ -52,9 +59,14 @@ class EdgeOverhang:
 
 
 def edge_overhang_of(
-    points: Reals, sides: Sequence[Side], rows: NDArray[np.bool_], *, exact: bool = False
+    points: Reals,
+    sides: Sequence[Side],
+    rows: NDArray[np.bool_],
+    *,
+    exact: bool = False,
+    cut_edges: Collection[str] = (),
 ) -> EdgeOverhang:
-    """The overhang of both edges over the points in `rows` (n,); loose limits for an `exact` cloud.
+    """The overhang of both edges over the points in `rows` (n,); loose limits for an `exact` cloud, none at cut edges.
 
     By chance a point may be further from an edge than others from each other, and the true edge must cost nothing.
     """
@@ -63,7 +75,7 @@ def edge_overhang_of(
     u, v = np.repeat([0.0, 1.0], len(stations)), np.tile(stations, 2)
     side = np.zeros(len(u), dtype=np.intp)
     edges = footpoints_at(np.zeros((len(u), points.shape[1])), sides, side, u, v)
-    chosen, shown = [], np.ones(len(u), dtype=bool)
+    chosen, shown = [], ~np.isin(u, [end for name, end in EDGE_ENDS.items() if name in cut_edges])
     for i, at in enumerate(edges.points):
         offset = cloud - at
         away = np.sum(offset**2, axis=-1)
@@ -71,7 +83,7 @@ def edge_overhang_of(
             along = np.asarray(upper.derivative(u[i : i + 1], v[i : i + 1], 0, 1))[0]
             way = offset @ along / (along @ along)
             away -= (1.0 - SPANWISE_WEIGHT**2) * way**2 * (along @ along)
-            shown[i] = 0.0 < v[i] < 1.0 or abs(way[np.argmin(away)]) < COVERED_SPAN
+            shown[i] &= 0.0 < v[i] < 1.0 or abs(way[np.argmin(away)]) < COVERED_SPAN
         chosen.append(int(np.argmin(away)))
     nearest = cloud[chosen]
     tree = cKDTree(cloud)

@@ -107,6 +107,8 @@ class Task:
     """(n,) inverse variances of the points, relative to each other; None where they are equal"""
     allow_outliers: bool = True
     """whether points may be outliers"""
+    cut_edges: frozenset[str] = frozenset()
+    """edges that are cut off, which may stand out of the cloud"""
     best_so_far: BestSoFar = field(default_factory=BestSoFar)
     """the nearest designs that searches have reached"""
 
@@ -250,7 +252,11 @@ def _prepared_round(
         model=model,
         ends=ends,
         overhang=edge_overhang_of(
-            points, shape.sides, noise_estimate.inliers & ~ends.on_end_face, exact=not task.allow_outliers
+            points,
+            shape.sides,
+            noise_estimate.inliers & ~ends.on_end_face,
+            exact=not task.allow_outliers,
+            cut_edges=task.cut_edges,
         ),
         noise=misfit if noise is None else noise,
         precision=np.ones(len(points)) if task.precision is None else task.precision,
