@@ -52,6 +52,23 @@ def test_without_a_command_the_help_is_printed(run):
     assert "Commands:" in run().out
 
 
+@pytest.mark.parametrize("other", [ImportError("a module failed"), SystemError("a call failed")])
+def test_an_interrupt_that_a_library_makes_another_error_of_is_one(other, run, design_file, monkeypatch):
+    def interrupted(*_, **__):
+        try:
+            signal.raise_signal(signal.SIGINT)
+        except KeyboardInterrupt as error:
+            raise other from error
+
+    monkeypatch.setattr("bladewright.cli.build_files.bodies_from", interrupted)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    found = run("build", design_file, "-o", design_file.parent / "out")
+    assert signal.signal(signal.SIGINT, before) is signal.default_int_handler
+    assert found.status == 130
+    assert "interrupted" in found.err
+    assert run("build", design_file.parent / "none.toml").status == 2
+
+
 def test_an_interruption_ends_with_130_and_leaves_nothing(run, design_file, monkeypatch):
     def interrupted(*_, **__):
         raise KeyboardInterrupt

@@ -1,8 +1,12 @@
 """The program: its commands, and what becomes of their outcomes and errors."""
 
+import signal
 import sys
+import threading
 import traceback
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from types import FrameType
 
 import click
 
@@ -61,22 +65,51 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command that the words of a command line name, and return the exit status."""
     words = list(sys.argv[1:] if arguments is None else arguments)
     call = Call.from_words(words)
+    with _noted_interrupts() as interrupts:
+        try:
+            outcome = program.main(words, prog_name="bladewright", standalone_mode=False, obj=call)
+            return print_outcome(outcome, call) if isinstance(outcome, Outcome) else int(outcome or 0)
+        except (KeyboardInterrupt, click.Abort) as error:
+            told = str(error.__cause__ or error)  # click's own error leaves out what was told
+            return _refused(call, error, "Interrupted", f"interrupted: {told}" if told else "interrupted", INTERRUPTED)
+        except Exception as error:  # noqa: BLE001  a user is owed a paragraph whatever happens
+            kind, message = _told(error)
+            if interrupts:
+                # the import of a compiled module makes another error of an interrupt
+                return _refused(call, error, "Interrupted", f"interrupted ({message})", INTERRUPTED)
+            return _refused(call, error, kind, message)
+
+
+@contextmanager
+def _noted_interrupts() -> Iterator[list[int]]:
+    """The interrupts that have come so far, each of which is handled as before."""
+    heard: list[int] = []
+    before = signal.getsignal(signal.SIGINT)
+    if not callable(before) or threading.current_thread() is not threading.main_thread():
+        yield heard
+        return
+
+    def handle(number: int, frame: FrameType | None) -> None:
+        heard.append(number)
+        before(number, frame)
+
+    signal.signal(signal.SIGINT, handle)
     try:
-        outcome = program.main(words, prog_name="bladewright", standalone_mode=False, obj=call)
-        return print_outcome(outcome, call) if isinstance(outcome, Outcome) else int(outcome or 0)
-    except (KeyboardInterrupt, click.Abort) as error:
-        told = str(error.__cause__ or error)  # click's own error leaves out what was told
-        return _refused(call, error, "Interrupted", f"interrupted: {told}" if told else "interrupted", INTERRUPTED)
-    except click.ClickException as error:
-        return _refused(call, error, "UsageError", _with_help(error))
-    except (BladewrightError, MemoryError) as error:
-        return _refused(call, error, type(error).__name__, str(error) or "there is not enough memory for this design")
-    except OSError as error:
-        return _refused(call, error, FileError.__name__, str(error))
-    except Exception as error:  # noqa: BLE001  a user is owed a paragraph whatever happens
-        reason = f"{type(error).__name__}: {error}"
-        message = f"this is a fault of bladewright, not of the input ({reason}); --debug shows where"
-        return _refused(call, error, "InternalError", message)
+        yield heard
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _told(error: Exception) -> tuple[str, str]:
+    """The kind of an error, and what a user is told of it."""
+    if isinstance(error, click.ClickException):
+        return "UsageError", _with_help(error)
+    if isinstance(error, BladewrightError | MemoryError):
+        return type(error).__name__, str(error) or "there is not enough memory for this design"
+    if isinstance(error, OSError):
+        return FileError.__name__, str(error)
+    reason = f"{type(error).__name__}: {error}"
+    return "InternalError", f"this is a fault of bladewright, not of the input ({reason}); --debug shows where"
 
 
 def _with_help(error: click.ClickException) -> str:
