@@ -4,7 +4,7 @@ Without this limit an edge that sticks out as a thin fin costs nothing, as it is
 """
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,14 +44,17 @@ class EdgeOverhang:
     """(m,) of the places along the edges"""
     allowed: Reals
     """(m,) overhang that costs nothing [m]; infinite where the cloud does not show the edge"""
+    normals: Reals
+    """(m, d) out of the blade, held: a nose turns them as it moves, where the points beside it may lie far along it"""
 
     def looks_at(self, u: float) -> bool:
         """Whether the cloud shows the edge at u."""
         return bool(np.any(np.isfinite(self.allowed[self.u == u])))
 
     def edges(self, sides: Sequence[Side]) -> Footpoints:
-        """The places on the edges beside the points, as footpoints."""
-        return footpoints_at(self.points, sides, np.zeros(len(self.u), dtype=np.intp), self.u, self.v)
+        """The places on the edges beside the points, as footpoints with the held normals."""
+        found = footpoints_at(self.points, sides, np.zeros(len(self.u), dtype=np.intp), self.u, self.v)
+        return replace(found, normals=self.normals)
 
     def excess(self, edges: Footpoints) -> Reals:
         """By how much edges stand out further than allowed (m,) [m]; negative where they do not."""
@@ -91,4 +94,4 @@ def edge_overhang_of(
     spacings = tree.query(cloud[around.ravel()], k=3)[0][:, -1]
     most = ALLOWED_SPACINGS_EXACT if exact else ALLOWED_SPACINGS
     allowed = np.where(shown, most * np.median(spacings.reshape(len(chosen), NEIGHBOURS), axis=1), np.inf)
-    return EdgeOverhang(points=nearest, u=u, v=v, allowed=allowed)
+    return EdgeOverhang(points=nearest, u=u, v=v, allowed=allowed, normals=edges.normals)
