@@ -65,8 +65,9 @@ DEVIATION_OVER_QUARTILE = 3.1384
 face beside a side, half of all there, spoil it less than the median."""
 CORE_NEIGHBOURS = 3
 """points of the large groups beside a small one to which a step within the noise may lead."""
-ALWAYS_INLIER = 1e-6
-"""distance up to which no point is an outlier, of the cloud's extent; it is for clouds that are exact."""
+ALWAYS_INLIER = 1e-4
+"""distance up to which no point is an outlier, of the cloud's extent: as near as exact points are to be met. The few of
+them at an edge lie further off than the noise that all others show."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -118,7 +119,7 @@ def outliers_of(
     edge = (footpoints.u < EDGE_BAND) | (footpoints.u > 1.0 - EDGE_BAND)
     exact = ALWAYS_INLIER * around.extent
     # a misfit of the design is told from outliers by going on from point to point
-    matched = misfit < MATCHED * noise and noise > exact
+    matched = misfit < MATCHED * noise
     slopes, local = np.zeros(len(heights)), np.full(len(heights), misfit)
     if not matched:
         steep = _steepness(heights, level, around)
@@ -127,8 +128,9 @@ def outliers_of(
             # on a blade points of an end face may be most of those around
             slopes = STEEPER_THAN_AROUND * _median(steep, near)[site]
             local = np.maximum(misfit, DEVIATION_OVER_MEDIAN * _median(roots * distances, near)[site])
-    least = np.hypot(OUTLYING_NOISE * level, np.where(edge, OUTLYING_MISFIT_AT_EDGES, OUTLYING_MISFIT) * local) + exact
-    spikes = _spikes(heights, OUTLYING_NOISE * level + exact, around)
+    least = np.hypot(OUTLYING_NOISE * level, np.where(edge, OUTLYING_MISFIT_AT_EDGES, OUTLYING_MISFIT) * local)
+    least = np.maximum(least, exact)
+    spikes = _spikes(heights, np.maximum(OUTLYING_NOISE * level, exact), around)
     far = (distances > least) | spikes
     if not np.any(far):
         return far
@@ -141,7 +143,7 @@ def outliers_of(
     if matched:
         found |= ~edge & (off_surface > least)
     elif footpoints.points.shape[1] == 3:
-        steady = ~found & (off_surface > np.hypot(OUTLYING_NOISE * level, STEADY_MISFIT * misfit) + exact)
+        steady = ~found & (off_surface > np.maximum(np.hypot(OUTLYING_NOISE * level, STEADY_MISFIT * misfit), exact))
         label = _groups(steady, steady, index)
         # an edge's radius is shown by few points and may be wrong by itself: these are no outliers
         found |= steady & (_sizes(label) <= largest) & ~np.isin(label, label[edge & steady])
