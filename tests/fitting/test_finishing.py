@@ -18,7 +18,7 @@ FINISHED = PLAIN.changed(
 
 
 @cache
-def cloud(count=500):
+def cloud(count=300):
     """Points of the sides, the fillet and the face of the cut edge."""
     random, blade = np.random.default_rng(3), built(FINISHED)
     upper, lower = blade.sides

@@ -52,18 +52,19 @@ class Finishing:
         }
         return {wall: 2.0 * self.design.metre * max(each) for wall, each in sizes.items() if each}
 
-    def hides(self, points: Reals, start: Design) -> NDArray[np.bool_]:
-        """Which of points (n, 3) [m] may lie on fillets and faces of cuts, by a plain design nearby."""
+    def hides(self, points: Reals, start: Design) -> NDArray[np.str_]:
+        """Which of points (n, 3) [m] may lie on a `face` of fillets and cuts, by a plain design nearby; else empty."""
         ends = dict(zip(WALLS, self.design.ends, strict=True))
         reach = {ends[wall]: height for wall, height in self.heights.items()}
         on_cut = ON_CUT * float(np.max(np.ptp(points, axis=0)))
         off = off_walls(points, self.given_to(start).build())
-        return np.any([far < reach.get(name, on_cut) for name, far in off.items()], axis=0)
+        hidden = np.any([far < reach.get(name, on_cut) for name, far in off.items()], axis=0)
+        return np.where(hidden, "face", "")
 
-    def shown(self, task: Task, free: FreeParameters, hidden: NDArray[np.bool_]) -> Task:
+    def shown(self, task: Task, free: FreeParameters, hidden: NDArray[np.str_]) -> Task:
         """The task without the points that are hidden, and with what these would show held."""
         return replace(
-            task.part(np.flatnonzero(~hidden)),
+            task.part(np.flatnonzero(hidden == "")),
             free=replace(free, unseen=self.cut | {*self.heights}),
             cut_edges=self.cut & {*EDGES},
         )

@@ -20,6 +20,7 @@ from bladewright.fitting.assessment.measurement import measured
 from bladewright.fitting.assessment.result import Fit, Motion
 from bladewright.fitting.clouds.cloud import checked_cloud, refuse_several_blades
 from bladewright.fitting.clouds.thinning import random_subset
+from bladewright.fitting.clouds.walls import walls_of
 from bladewright.fitting.design_header import DesignHeader, Unit
 from bladewright.fitting.families.blades import matched_blade
 from bladewright.fitting.families.kinds import FAMILIES, FitFamily, family_of
@@ -136,11 +137,12 @@ def fit(
         motion, header, more = _aligned(points, start, header)
         notes = (*notes, *more)
     points = points if motion is None else motion(points)
-    cascade = arrangement == "linear" and points.shape[1] == 3 and not align and start is None and like is None
-    if cascade and spans_along_y(points):
+    given = start is not None or like is not None
+    if arrangement == "linear" and points.shape[1] == 3 and not (align or given) and spans_along_y(points):
         motion = UPRIGHT if motion is None else composed(UPRIGHT, motion)
         points, notes = UPRIGHT(points), (*notes, UPRIGHT_NOTE)
-    refuse_several_blades(points)
+    walls = walls_of(points, header.arrangement or getattr(start or like, "arrangement", None))
+    refuse_several_blades(points[~walls.on_curve])
     free_parameters = free_parameters_of(free, fixed, started=start is not None)
     task = every = Task(
         points=points,
@@ -150,13 +152,15 @@ def fit(
         progress=tell,
         precision=None if weights is None else _weights(weights, len(points)),
     )
-    structured = parameters is None and (start is not None or like is not None)
-    target = MatchTarget(tolerance=tolerance, parameters=parameters, structured=structured)
+    target = MatchTarget(tolerance=tolerance, parameters=parameters, structured=parameters is None and given)
     hidden = None
     try:
         if finishing is not None and start is not None:
             hidden = finishing.hides(points, start)
             task = finishing.shown(task, free_parameters, hidden)
+        elif walls.places:
+            hidden = walls.kinds
+            task = replace(task.part(np.flatnonzero(hidden == "")), walls=walls.places)
         found, built, reason = _matched(task, kind, start, like, header, target)
     except KeyboardInterrupt:
         nearest = task.best_so_far.built()
@@ -169,12 +173,7 @@ def fit(
             every, hidden = every.part(rows), None if hidden is None else hidden[rows]
     except DesignError as error:
         raise FitError(f"no design of the family was found near the points ({error}): {WHOLE_BLADE_HINT}") from error
-    if (
-        start is None
-        and like is None
-        and header.arrangement is None
-        and getattr(found.design, "arrangement", "") == "linear"
-    ):
+    if not given and header.arrangement is None and getattr(found.design, "arrangement", "") == "linear":
         notes = (*notes, CASCADE_NOTE)
     notes = (*notes, *([reason] if reason else []))
     return _reported(found, built, every, target, notes, motion, finishing, hidden)
@@ -287,7 +286,7 @@ def _reported(
     notes: tuple[str, ...],
     motion: Motion | None,
     finishing: Finishing | None,
-    hidden: NDArray[np.bool_] | None,
+    hidden: NDArray[np.str_] | None,
 ) -> Fit:
     task.progress("measuring")
     design, built, failures = match.design, plain, list[str]()
@@ -297,9 +296,7 @@ def _reported(
             built, design = finished.build(), finished
         except DesignError as error:
             failures.append(f"what is found cannot be cut or filleted as is given, and is left without: {error}")
-    measurement = measured(
-        task.points, plain, task.precision, hidden=hidden, finished=None if built is plain else built
-    )
+    measurement = measured(task.points, plain, task.precision, hidden=hidden, finished=built)
     statistics = parameter_estimates(match)
     return Fit(
         design=design,

@@ -9,12 +9,13 @@ from numpy.typing import NDArray
 
 from bladewright.blade.native.blade import Blade
 from bladewright.fitting.assessment.deviation import REGIONS
-from bladewright.fitting.assessment.finished_faces import off_finished_faces
+from bladewright.fitting.assessment.finished_faces import LONGEST_NAME, off_finished_faces
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS, WallPoints, blade_ends_of
 from bladewright.fitting.matching.footpoints import Footpoints, Side, nearest_footpoints
 from bladewright.fitting.matching.noise import NoiseEstimate, noise_of
 from bladewright.fitting.models.blunt_edges import edges_of, on_sides, sides_of
 from bladewright.fitting.models.model import ModelShape
+from bladewright.numerics.robust import median_deviation
 from bladewright.nurbs.basis import Reals
 from bladewright.section.section import Section
 
@@ -23,6 +24,8 @@ EDGE_REGION = 0.03
 LAST_STEP, LAST_STEP_EXACT = 1e-6, 1e-12
 """last step of the descents, in the parameters of a patch, for all points (`LAST_STEP`) and for those that lie on the
 blade (`LAST_STEP_EXACT`), whose distances are exact to the step itself; others are exact to its square."""
+OFF_SIDES = 3.0
+"""standard deviations of the distances from which a point is off the sides, and may be on another face"""
 ON_BLADE = 3e-6
 """distance up to which a point lies on the blade, of the cloud's extent, and is projected once more."""
 
@@ -67,22 +70,29 @@ def measured(
     built: Blade | Section,
     precision: Reals | None = None,
     *,
-    hidden: NDArray[np.bool_] | None = None,
+    hidden: NDArray[np.str_] | None = None,
     finished: Blade | None = None,
 ) -> Measurement:
     """Every point's nearest place and signed distance on a blade or section, before cuts and fillets.
 
-    `precision` (n,) are inverse variances of the points, relative to each other. Those `hidden` (n,) of the points that
-    are nearer to a face of a cut, a fillet or a wall of the `finished` blade are set aside.
+    `precision` (n,) are inverse variances of the points, relative to each other. Where `hidden` (n,) is not
+    empty, points off the sides are set aside: on a `wall` or a `fillet` beside the blade, or on the faces of cuts and
+    fillets that the `finished` blade has, where they are nearer to these.
     """
     sides = sides_of(built)
     exact = built.exact if isinstance(built, Blade) else None
     footpoints = _nearest(points, sides)
-    set_aside, off = np.full(len(points), "", dtype="<U32"), footpoints.distances
-    if hidden is not None and finished is not None and np.any(hidden):
-        names, far = off_finished_faces(points[hidden], finished)
-        set_aside[hidden] = np.where(far < off[hidden], names, "")
-        off[hidden] = np.minimum(far, off[hidden])
+    set_aside, off = np.full(len(points), "", dtype=f"<U{LONGEST_NAME}"), footpoints.distances
+    if hidden is not None and finished is not None and np.any(hidden != ""):
+        rows = np.flatnonzero(hidden != "")
+        rows = rows[off[rows] > OFF_SIDES * median_deviation(off[hidden == ""])]
+        names, far = off_finished_faces(points[rows], finished)
+        if finished is built:
+            # it has no fillets of its own
+            set_aside[rows] = np.where(hidden[rows] == "fillet", np.char.add(names, " fillet"), names)
+        else:
+            set_aside[rows] = np.where(far < off[rows], names, "")
+        off[rows] = np.minimum(far, off[rows])
     noise_estimate = _noise_without(points, footpoints, precision, set_aside == "")
     shape = ModelShape(design=None, sides=sides, edge_radius_margins=np.zeros(0), exact=exact)
     ends = blade_ends_of(points, footpoints, shape, noise_estimate.inliers)

@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 
 from bladewright.blade.exact.exact_blade import ExactBlade
 from bladewright.derivatives.complex_step import STEP
+from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.matching.footpoints import Footpoints, footpoints_at
 from bladewright.fitting.models.model import ModelShape
 from bladewright.numerics.robust import median_deviation
@@ -27,6 +28,8 @@ DEEPEST_FACE_POINT = 0.2
 is not yet found."""
 PAST_END_BAND = 0.05
 """distance from an end, in v, within which a point may come to lie past it while the design changes."""
+MOST_WALL_POINTS = 400
+"""points of a wall beside the blade that count: as many as rows at an end have"""
 FEWEST_ROW_POINTS = 5
 """points that a row at an end needs."""
 ROW_WIDTH, ROW_LEAST_WIDTH = 4.5, 1e-6
@@ -107,8 +110,14 @@ class BladeEnds:
     """indices of the points that may lie past an end of the sides"""
 
 
-def blade_ends_of(points: Reals, footpoints: Footpoints, shape: ModelShape, rows: NDArray[np.bool_]) -> BladeEnds:
-    """The ends as points (n, d) show them, of those in `rows` (n,)."""
+def blade_ends_of(
+    points: Reals,
+    footpoints: Footpoints,
+    shape: ModelShape,
+    rows: NDArray[np.bool_],
+    beside: Sequence[Reals] = (),
+) -> BladeEnds:
+    """The ends as points (n, d) show them, of those in `rows` (n,), and places (m, 2) of walls `beside` the blade."""
     on_end_face = np.zeros(len(points), dtype=bool)
     exact = shape.exact
     if exact is None:
@@ -140,8 +149,22 @@ def blade_ends_of(points: Reals, footpoints: Footpoints, shape: ModelShape, rows
         # points of the sides beside the row would pull the end inwards
         chosen = chosen[aside <= ROW_WIDTH * max(spread, ROW_LEAST_WIDTH * float(np.ptp(places)))]
         walls[name] = WallPoints(name=name, places=places[chosen], spread=spread)
+    for each in beside:
+        wall = _nearer_wall(each, exact)
+        walls[wall.name] = wall
     near = np.flatnonzero(((footpoints.v < PAST_END_BAND) | (footpoints.v > 1.0 - PAST_END_BAND)) & ~on_end_face)
     return BladeEnds(walls=walls, on_end_face=on_end_face, near=near)
+
+
+def _nearer_wall(places: Reals, exact: ExactBlade) -> WallPoints:
+    """The wall that places (m, 2) beside a blade are of, with those between its leading and trailing edge."""
+    walls = [WallPoints(name=name, places=places, spread=0.0) for name in END_PARAMETERS]
+    t, distances = min((wall.located(exact) for wall in walls), key=lambda each: float(np.median(np.abs(each[1]))))
+    name = walls[int(np.argmin([np.median(np.abs(wall.distances(exact))) for wall in walls]))].name
+    between = np.flatnonzero((t > 0.0) & (t < 1.0))
+    between = between[random_subset(len(between), MOST_WALL_POINTS)]
+    aside = _off_row(t[between], distances[between], inward=1.0 if name == "hub" else -1.0)
+    return WallPoints(name=name, places=places[between], spread=median_deviation(aside) if len(between) else 0.0)
 
 
 def _off_row(t: Reals, distances: Reals, *, inward: float) -> Reals:

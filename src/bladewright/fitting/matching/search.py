@@ -109,6 +109,8 @@ class Task:
     """whether points may be outliers"""
     cut_edges: frozenset[str] = frozenset()
     """edges that are cut off, which may stand out of the cloud"""
+    walls: tuple[Reals, ...] = ()
+    """(m, 2) points of hub and shroud beside the blade, in (x, r) or (x, z) [m]: they show where it ends"""
     best_so_far: BestSoFar = field(default_factory=BestSoFar)
     """the nearest designs that searches have reached"""
 
@@ -240,7 +242,7 @@ def _prepared_round(
         raise FitError("the start design has no shape near its edges: give another start, or none")
     footpoints = nearest_footpoints(points, shape.sides)
     noise_estimate = noise_of(points, footpoints, task.precision, allow_outliers=task.allow_outliers)
-    ends = blade_ends_of(points, footpoints, shape, noise_estimate.inliers)
+    ends = blade_ends_of(points, footpoints, shape, noise_estimate.inliers, task.walls)
     misfit = (
         float(np.sqrt(np.mean(footpoints.distances[noise_estimate.inliers & ~ends.on_end_face] ** 2))) / model.chord
     )

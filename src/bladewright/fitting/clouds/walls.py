@@ -1,0 +1,245 @@
+"""Points of hub and shroud beside a blade: a sheet on one curve of the meridional plane that ends the blade.
+
+Sheets are connected patches of neighbouring points, whose plane holds the pitchwise direction (principal components:
+Hoppe et al. 1992). A sheet is a wall where the other points lie on one side of it, and where it is wider along the
+pitch than the blade is thick beside it. Sides are not, nor are noses, end faces and rows of points.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from bladewright.fitting.clouds.thinning import random_subset
+from bladewright.fitting.design_header import Arrangement
+from bladewright.numerics.elementary import cross2
+from bladewright.numerics.robust import median_deviation
+from bladewright.nurbs.basis import Reals
+
+LOOKED_AT = 6000
+"""points, drawn at random, among which sheets are sought; it bounds the time"""
+PATCH, BESIDE = 12, 24
+"""points of a patch, whose plane is known to some degrees, and of the surroundings of a point in the meridional plane,
+both sides of the blade among them"""
+FLAT, AREA = 0.1, 0.3
+"""ratio of a patch's extents in the meridional plane up to which it stands on a curve there, and in space from which it
+is an area and no row of points (`AREA`)"""
+TURN, STEP = 0.3, 0.3
+"""sine of the angle between neighbouring patches of one sheet, and the step across it, of a patch, at most"""
+FEWEST_SHARE = 0.01
+"""share of the points that the smallest wall has, and two patches in any case"""
+SCATTER, BENT = 2e-3, 0.2
+"""scatter of a wall about its curve, of its extent, and the ratio of extents of a sixth of it (`BENT`), at most: walls
+reach 1e-3 and 0.05, rows of points that only seem to be a sheet have 6e-3 (design/matching.md)"""
+ONE_SIDE = 0.97
+"""share of the other points beside a wall that lie on one side of it"""
+WIDER = 1.5
+"""width of a wall along the pitch, of the largest thickness beside it: sheets of clouds without walls reach 0.91, walls
+that reach half a chord to each side begin at 2 (design/matching.md)"""
+FILLET_PATCH = 8
+"""points of a patch of a fillet, which is small"""
+AT_WALL, ON_FILLET = 0.65, 0.5
+"""cosine between the normals of wall and surface, by the median of `BESIDE` points, from which the points next to a
+wall are a fillet's, and down to which those above are (`ON_FILLET`): next to 1,000 points of a wall it is 0.74 at least
+with fillets, and 0.58 at most without, of a blade that leans by as much (design/matching.md)"""
+ROW_WIDTH, LEAST_SCATTER = 4.5, 1e-4
+"""standard deviations of its scatter within which a point stands on a wall's curve, and the least such distance, of the
+wall's extent, for exact walls are curved within a patch"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Walls:
+    """Walls beside a blade."""
+
+    on_curve: NDArray[np.bool_]
+    """(n,) whether a point stands where a wall does in the meridional plane, as the sides' own ends do, too"""
+    on_fillet: NDArray[np.bool_]
+    """(n,) whether a point is as near to a wall as its fillet reaches at most"""
+    places: tuple[Reals, ...] = ()
+    """(m, 2) of each wall, points in x and the radius, or in x and z of a cascade [m]"""
+
+    @property
+    def kinds(self) -> NDArray[np.str_]:
+        """(n,) what a point may lie on: `wall`, `fillet`, or nothing else than the blade's sides."""
+        return np.where(self.on_fillet, "fillet", np.where(self.on_curve, "wall", ""))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Places:
+    """Points unrolled into the meridional plane and the pitch."""
+
+    plane: Reals
+    """(n, 2) x and the radius, or x and z of a cascade [m]"""
+    pitchwise: Reals
+    """(n,) arc around the axis, or y of a cascade [m]"""
+    second: Reals
+    """(n, 3) unit vectors of the second coordinate in the plane"""
+
+    def part(self, rows: NDArray[np.intp]) -> "_Places":
+        return _Places(plane=self.plane[rows], pitchwise=self.pitchwise[rows], second=self.second[rows])
+
+    def in_space(self, rows: NDArray[np.intp], vectors: Reals) -> Reals:
+        """Vectors (m, 2) at some of the points in space (m, 3)."""
+        return vectors[:, :1] * [1.0, 0.0, 0.0] + vectors[:, 1:] * self.second[rows]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Sheet:
+    """A curve in the meridional plane through the points (m, 2) of a sheet."""
+
+    points: Reals
+    tangents: Reals
+    tree: cKDTree
+
+    @property
+    def extent(self) -> float:
+        return float(np.sqrt(np.sum(np.ptp(self.points, axis=0) ** 2)))
+
+    def off(self, plane: Reals) -> Reals:
+        """Distances (n,) from the line through the sheet's points around each place (n, 2)."""
+        patches = self.points[self.tree.query(plane, k=PATCH)[1]]
+        middle = np.mean(patches, axis=1)
+        along = np.linalg.svd(patches - middle[:, None], full_matrices=False)[2][:, 0]
+        return np.abs(cross2(plane - middle, along))
+
+    @property
+    def within(self) -> float:
+        """Distance from the curve up to which a point stands on it."""
+        return ROW_WIDTH * median_deviation(self.off(self.points)) + LEAST_SCATTER * self.extent
+
+    def holds(self, plane: Reals, width: float) -> NDArray[np.bool_]:
+        """Which of places (n, 2) stand on the curve, less than two patches of a width from the sheet."""
+        return np.asarray((self.tree.query(plane)[0] < 2.0 * width) & (self.off(plane) <= self.within))
+
+    @property
+    def bent(self) -> float:
+        """How far a sixth of the curve is from straight, as the ratio of its extents."""
+        some = self.points[:: max(1, len(self.points) // 60)]
+        pieces = self.points[self.tree.query(some, k=max(PATCH, len(self.points) // 6))[1]]
+        extents = np.linalg.svd(pieces - np.mean(pieces, axis=1)[:, None], compute_uv=False)
+        return float(np.quantile(extents[:, 1] / extents[:, 0], 0.9))
+
+
+def walls_of(points: Reals, arrangement: Arrangement | None) -> Walls:
+    """Hub and shroud as points (n, 3) [m] in the machine's axes show them beside a blade; none of a section's.
+
+    Where the arrangement is not known both are tried, and that in which more points are on walls is taken.
+    """
+    if points.shape[1] == 2:
+        return Walls(on_curve=np.zeros(len(points), dtype=bool), on_fillet=np.zeros(len(points), dtype=bool))
+    kinds: tuple[Arrangement, ...] = ("annular", "linear") if arrangement is None else (arrangement,)
+    return max((_walls(points, kind) for kind in kinds), key=lambda walls: np.count_nonzero(walls.on_curve))
+
+
+def _unrolled(points: Reals, arrangement: Arrangement) -> _Places:
+    x, y, z = points.T
+    if arrangement == "linear":
+        return _Places(plane=np.stack([x, z], axis=-1), pitchwise=y, second=np.tile([0.0, 0.0, 1.0], (len(x), 1)))
+    radius, angle = np.hypot(y, z), np.arctan2(y, z)
+    middle = np.angle(np.mean(np.exp(1j * angle)))
+    return _Places(
+        plane=np.stack([x, radius], axis=-1),
+        pitchwise=radius * np.angle(np.exp(1j * (angle - middle))),
+        second=np.stack([np.zeros_like(angle), np.sin(angle), np.cos(angle)], axis=-1),
+    )
+
+
+def _walls(points: Reals, arrangement: Arrangement) -> Walls:
+    every, places = _unrolled(points, arrangement), list[Reals]()
+    on_curve, on_fillet = np.zeros((2, len(points)), dtype=bool)
+    rows = random_subset(len(points), LOOKED_AT)
+    some, near = every.part(rows), cKDTree(points[rows]).query(points[rows], k=PATCH)[1]
+    extents, tangents = _extents(some.plane[near])
+    sheets = (extents[:, 1] < FLAT * extents[:, 0]) & _are_areas(points[rows][near])
+    label = _connected(some.plane, near, tangents, extents[:, 0], sheets)
+    for group in np.unique(label[sheets]):
+        own = sheets & (label == group) & ~on_curve[rows]
+        if np.count_nonzero(own) >= max(2 * PATCH, FEWEST_SHARE * len(rows)):
+            own = _whole(some.plane, tangents, own, sheets)
+            sheet = _Sheet(points=some.plane[own], tangents=tangents[own], tree=cKDTree(some.plane[own]))
+            width = float(np.median(extents[own, 0]))
+            others = ~own & ~sheet.holds(some.plane, width)
+            if _is_wall(sheet, some, own, others, width):
+                on_curve |= sheet.holds(every.plane, width)
+                on_fillet |= sheet.tree.query(every.plane)[0] < _fillet_height(sheet, some, points[rows], others, width)
+                places.append(sheet.points)
+    return Walls(on_curve=on_curve, on_fillet=on_fillet & ~on_curve, places=tuple(places))
+
+
+def _extents(patches: Reals) -> tuple[Reals, Reals]:
+    """Extents (n, 2) of patches (n, k, 2) along their own axes, largest first, and the first axis (n, 2)."""
+    centred = patches - np.mean(patches, axis=1)[:, None]
+    _, sizes, axes = np.linalg.svd(centred, full_matrices=False)
+    return sizes / np.sqrt(patches.shape[1]), axes[:, 0]
+
+
+def _are_areas(patches: Reals) -> NDArray[np.bool_]:
+    """Whether patches (n, k, 3) are areas, and not rows of points."""
+    sizes = np.linalg.svd(patches - np.mean(patches, axis=1)[:, None], compute_uv=False)
+    return np.asarray(sizes[:, 1] > AREA * sizes[:, 0])
+
+
+def _connected(
+    plane: Reals, near: NDArray[np.intp], tangents: Reals, sizes: Reals, sheets: NDArray[np.bool_]
+) -> NDArray[np.intp]:
+    """Labels (n,) of the sheets that neighbouring patches (n, k) on one curve form."""
+    start, end = np.repeat(np.arange(len(plane)), near.shape[1]), near.ravel()
+    straight = np.abs(cross2(tangents[start], tangents[end])) < TURN
+    level = np.abs(cross2(tangents[start], plane[end] - plane[start])) < STEP * sizes[start]
+    taken = sheets[start] & sheets[end] & straight & level
+    graph = coo_array((np.ones(np.count_nonzero(taken)), (start[taken], end[taken])), shape=(len(plane),) * 2)
+    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.intp)
+
+
+def _whole(plane: Reals, tangents: Reals, own: NDArray[np.bool_], sheets: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The points of all sheets on the curve of one: a wall may lie to both sides of its blade."""
+    sheet = _Sheet(points=plane[own], tangents=tangents[own], tree=cKDTree(plane[own]))
+    off, nearest = sheet.tree.query(plane)
+    along = np.abs(cross2(tangents, sheet.tangents[nearest])) < TURN
+    return own | (sheets & along & (off < sheet.extent) & (sheet.off(plane) <= sheet.within))
+
+
+def _is_wall(sheet: _Sheet, some: _Places, own: NDArray[np.bool_], others: NDArray[np.bool_], width: float) -> bool:
+    """Whether a sheet ends the blade, and is wider along the pitch than that is thick beside it."""
+    away, nearest = sheet.tree.query(some.plane)
+    way = some.plane - sheet.points[nearest]
+    along = np.sum(way * sheet.tangents[nearest], axis=1)
+    reach = others & (away < 0.25 * sheet.extent) & (np.abs(along) < width)
+    if min(np.count_nonzero(reach), np.count_nonzero(others)) < BESIDE or sheet.bent > BENT:
+        return False
+    if median_deviation(sheet.off(sheet.points)) > SCATTER * sheet.extent:
+        return False
+    side = np.sign(cross2(sheet.tangents[nearest], way))[reach]
+    place, tangent = sheet.points[nearest[reach]], sheet.tangents[nearest[reach]]
+    around = cKDTree(place).query(place, k=BESIDE)[1]
+    alike = np.sign(np.sum(tangent[around] * tangent[:, None], axis=-1))
+    if np.mean(side == np.sign(np.sum(side[around] * alike, axis=1))) < ONE_SIDE:
+        return False
+    own_width = np.ptp(some.pitchwise[own][sheet.tree.query(sheet.points, k=BESIDE)[1]], axis=1)
+    beside = cKDTree(some.plane[others]).query(sheet.points, k=BESIDE)[1]
+    thickness = np.ptp(some.pitchwise[others][beside], axis=1)
+    return bool(np.median(own_width) > WIDER * np.quantile(thickness, 0.95))
+
+
+def _fillet_height(sheet: _Sheet, some: _Places, points: Reals, others: NDArray[np.bool_], width: float) -> float:
+    """Height [m] above a wall that its fillet reaches at most; 0 where there is none.
+
+    With a the cosine between the normals of wall and surface, a ball of radius r leaves the height r (1 - a), and ends
+    below 2 r.
+    """
+    away, nearest = sheet.tree.query(some.plane)
+    way = some.plane - sheet.points[nearest]
+    rows = np.flatnonzero(others & (np.abs(np.sum(way * sheet.tangents[nearest], axis=1)) < width))
+    rows = rows[np.argsort(away[rows], kind="stable")]
+    patches = points[others][cKDTree(points[others]).query(points[rows], k=FILLET_PATCH)[1]]
+    normals = np.linalg.svd(patches - np.mean(patches, axis=1)[:, None], full_matrices=False)[2][:, 2]
+    across = np.stack([-sheet.tangents[nearest[rows], 1], sheet.tangents[nearest[rows], 0]], axis=-1)
+    facing = np.abs(np.sum(normals * some.in_space(rows, across), axis=1))
+    windows = np.median(np.lib.stride_tricks.sliding_window_view(facing, min(BESIDE, len(rows))), axis=1)
+    if windows[0] < AT_WALL or not np.any(windows < ON_FILLET):
+        return 0.0
+    low = int(np.argmax(windows < ON_FILLET))
+    return 2.0 * float(np.sum(sheet.off(some.plane[rows[:low]])) / np.sum(1.0 - facing[:low]))
