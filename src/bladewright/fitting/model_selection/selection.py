@@ -31,6 +31,7 @@ from bladewright.fitting.model_selection.prediction import FOLDS, LinearModel, P
 from bladewright.fitting.model_selection.reshaping import Counts, reshaped, with_feasible_edges
 from bladewright.fitting.model_selection.reweighting import confirmed_match, largest_of, nearest_to_tolerance
 from bladewright.fitting.model_selection.rich_structures import rich_structure, wider_structure
+from bladewright.fitting.model_selection.sharp_edges import with_sharp_edges
 from bladewright.fitting.model_selection.structure import Structure, structure_of
 
 GUESS_NOISE = 3e-3
@@ -126,6 +127,7 @@ def _searched_further(task: Task, match: Match) -> Match:
 
 def determined(task: Task, match: Match) -> tuple[Match, str]:
     """A match searched on, with the parameters held that the points do not determine, and a note of them."""
+    task, match, note = with_sharp_edges(task, match)
     held: list[str] = []
     for number in range(MOST_HOLDINGS):
         more = undetermined_parameters(match, DETERMINED_MARGIN)
@@ -133,7 +135,7 @@ def determined(task: Task, match: Match) -> tuple[Match, str]:
             break
         held += more
         match = _searched_further(replace(task, free=partial(_free_but, task, tuple(held))), match)
-    return match, HELD_NOTE.format(", ".join(held)) if held else ""
+    return match, "; ".join(filter(None, (note, HELD_NOTE.format(", ".join(held)) if held else "")))
 
 
 def _free_but(task: Task, held: tuple[str, ...], design: Design) -> tuple[str, ...]:

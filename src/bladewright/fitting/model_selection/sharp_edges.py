@@ -1,0 +1,72 @@
+"""Edges that are as sharp as the family allows, where the points tell no radius from none.
+
+A round edge of unknown radius and an end of the blade further in make up for each other, so that least squares alone
+leave the tip of a wedge short by several radii.
+"""
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+from scipy.special import chdtri
+
+from bladewright.designs import Design
+from bladewright.errors import DesignError, FitError
+from bladewright.fitting.matching.footpoints import Side
+from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
+
+SHARP_RADIUS = 5e-6
+"""radius of such an edge, of the axial chord: a wedge of 15 deg ends 3.3e-5 before its tip, by r / sin(7.5 deg) - r, a
+third of what exact points are met within."""
+ROUNDS = 3
+"""rounds of the searches that are compared; a last one follows."""
+SHARPER_BY_CHANCE = 0.05
+"""probability that a round edge leaves so much less than a sharp one by chance, where it is sharp (Wilks 1938)."""
+SHARP_NOTE = (
+    "the points tell the {} from no sharp one, and the edges of this family are round: the radius is held "
+    f"at {SHARP_RADIUS:g} (--family profile has sharp edges)"
+)
+"""note of such edges"""
+EDGES = {
+    "leading edge": ("leading_edge_radius", slice(None, 3)),
+    "trailing edge": ("trailing_edge_radius", slice(-1, -4, -1)),
+}
+"""the radius of each edge, and the control points of a side from there"""
+
+
+def with_sharp_edges(task: Task, match: Match) -> tuple[Task, Match, str]:
+    """The match of a section with the radii of such edges held, its task, and a note of them."""
+    sharp: list[str] = []
+    for name, (radius, ends) in EDGES.items() if task.dimension == 2 else ():
+        if radius not in match.problem.paths or not all(_pointed(side, ends) for side in match.state.shape.sides):
+            continue
+        held = replace(task, free=partial(_free_but, task, radius))
+        try:
+            match = searched(task, match.design, noise=match.rms, rounds=ROUNDS, min_reduction=ROUGH_REDUCTION)
+            found = searched(
+                held,
+                match.design.changed({radius: SHARP_RADIUS}),
+                noise=match.rms,
+                rounds=ROUNDS,
+                min_reduction=ROUGH_REDUCTION,
+            )
+            found.design.build()
+        except (DesignError, FitError):
+            continue
+        before, after = (np.sum(each.state.footpoints.distances[match.rows] ** 2) for each in (match, found))
+        count = np.count_nonzero(match.rows) * match.noise_estimate.independent_share(len(match.problem.paths))
+        if count * np.log(after / before) < chdtri(1, SHARPER_BY_CHANCE):
+            task, match, sharp = held, found, [*sharp, name]
+    return task, match, SHARP_NOTE.format(" and the ".join(sharp)) if sharp else ""
+
+
+def _free_but(task: Task, held: str, design: Design) -> tuple[str, ...]:
+    return tuple(path for path in task.free(design) if path != held)
+
+
+def _pointed(side: Side, ends: slice) -> bool:
+    """Whether the third control point of a side lies further from its edge than from its camber line."""
+    edge, second, third = side.control_points[ends]
+    across = (second - edge) / np.sqrt(np.sum((second - edge) ** 2))
+    rise = float((third - edge) @ across)
+    return 2.0 * rise**2 < float(np.sum((third - edge) ** 2))
