@@ -203,8 +203,8 @@ def searched(
         try:
             prepared = found if number == 0 else _prepared_round(task, start, found.design, noise, found)
             found = _descended_round(task, prepared, min_reduction)
-        except FitError:
-            # at finer knots the design has no shape: the round before stands
+        except (DesignError, FitError):
+            # at finer knots, or in a derivative, the design has no shape: the round before stands
             break
         task.best_so_far.note(found)
         rms = f"{1e3 * found.rms * found.model.chord:.3g} mm rms, {1e3 * found.maximum:.3g} mm at most"
