@@ -22,8 +22,9 @@ from bladewright.section.checks import UNITS
 from bladewright.section.unified import UnifiedSection
 from bladewright.section.unified_sides import sample_places, side_curve
 
-RADIUS_STATIONS = SURVEY
-"""places along the span at which the thickness must hold the edges' radii"""
+PLACES_ALONG_SPAN: Reals = np.linspace(0.0, 1.0, 65)
+"""places along the span among which those are sought where an edge's radius is nearest to what the thickness holds:
+five for each joint of the longest law (`MOST_SPAN` control points)."""
 FOLD_GRID = (21, 21)
 """places along and across the channel at which it is checked for folding; a fold between them is refused by `build`."""
 COARSE_SEARCH, KNOT_SLACK = 3.0, 100.0
@@ -86,11 +87,13 @@ class BladeModel(SpatialModel):
         self.chord = mean_chord(exact)
         slack = KNOT_SLACK if self.tolerance > COARSE_SEARCH * design.tolerance else 1.0
         self.knots: Knots = refined_knots(exact, self.chord, slack=slack)
+        self.stations = np.union1d(SURVEY, _narrowest_places(design, exact))
+        """places along the span at which the thickness must hold the edges' radii"""
 
     def _shape(self, design: Any) -> ModelShape:
         exact = exact_unified_blade(design, self.knots.tip, tentative=True)
         upper, lower = native_sides(exact.sections(self.knots.sites_v), self.knots)
-        plane = exact.sections(RADIUS_STATIONS).plane
+        plane = exact.sections(self.stations).plane
         return ModelShape(
             design=design,
             sides=(side_surface(upper, self.knots, DEGREE), side_surface(lower, self.knots, DEGREE)),
@@ -107,9 +110,9 @@ class BladeModel(SpatialModel):
         found = np.zeros((len(paths), *shape.edge_radius_margins.shape))
         design, own = shape.design, [place for place, path in enumerate(paths) if not path.startswith("channel.")]
         steps, sources = steps_of(design, [paths[place] for place in own])
-        plane = shape.exact.moved_to(stepped_design(design, steps)).sections(RADIUS_STATIONS).plane
+        plane = shape.exact.moved_to(stepped_design(design, steps)).sections(self.stations).plane
         rates = np.imag(_edge_radius_margins(design, plane.camber, plane.upper, plane.lower)) / STEP
-        weights = [step.weights(RADIUS_STATIONS) for step in steps]
+        weights = [step.weights(self.stations) for step in steps]
         for place, (step, number) in zip(own, sources, strict=True):
             found[place] = rates[:, step] * weights[step][:, number]
         return found
@@ -124,6 +127,18 @@ class BladeModel(SpatialModel):
                 np.imag(_fold_margins(shape.exact, shape.exact.moved_to(shape.design.changed(steps)).channel)) / STEP
             )
         return found
+
+
+def _narrowest_places(design: UnifiedBlade, exact: ExactUnifiedBlade) -> Reals:
+    """Where along the span edge radii come nearest to what the thickness holds, or exceed it most.
+
+    Searches hold the radii there and where the blade is surveyed: the exchange method of semi-infinite constraints
+    (Hettich and Kortanek 1993, section 7), an exchange a round.
+    """
+    plane = exact.sections(PLACES_ALONG_SPAN).plane
+    excess = np.real(_edge_radius_margins(design, plane.camber, plane.upper, plane.lower))[0]
+    higher = np.pad(excess, ((0, 0), (1, 1)), constant_values=-np.inf)
+    return PLACES_ALONG_SPAN[np.any((excess >= higher[:, :-2]) & (excess >= higher[:, 2:]), axis=0)]
 
 
 def _fold_margins(exact: ExactUnifiedBlade, channel: TransfiniteChannel) -> Array:
