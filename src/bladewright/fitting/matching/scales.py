@@ -164,7 +164,7 @@ def _range(design: Design, path: str, value: float, largest: float, chord: float
     kinds = {
         "stagger": ParameterRange(5.0, -LARGEST_ANGLE, LARGEST_ANGLE),
         "metal_angle": ParameterRange(10.0, -LARGEST_ANGLE, LARGEST_ANGLE),
-        "tangent": ParameterRange(0.2, 0.02, 1.0),
+        "tangent": ParameterRange(0.2, 0.05, 1.0),
         "leading_edge_radius": ParameterRange(max(0.5 * largest, 1e-3), SMALLEST_LENGTH, 1.0),
         "trailing_edge_radius": ParameterRange(max(0.5 * largest, 1e-3), SMALLEST_LENGTH, 1.0),
         "thickness": ParameterRange(max(0.5 * largest, 0.02), SMALLEST_LENGTH, 5.0),
