@@ -10,7 +10,7 @@ from bladewright.fitting.free_parameters import corner_radii, free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.model_selection.elimination import best_of_size, eliminated, reweighted
 from bladewright.fitting.model_selection.match_target import MatchTarget
-from bladewright.fitting.model_selection.prediction import FOLDS, LinearModel, folds_of
+from bladewright.fitting.model_selection.prediction import LinearModel
 from bladewright.fitting.model_selection.reshaping import reshaped, resizable_laws
 from bladewright.fitting.model_selection.rich_structures import rich_structure, wider_structure
 from bladewright.fitting.model_selection.selection import selected_match
@@ -88,32 +88,6 @@ def test_the_loss_of_a_nested_law_is_the_rise_of_the_least_squares():
     fewer = linear.prediction([(3, 1), (6, 1)])
     losses = {(law, counts): loss * number for loss, number, law, counts in linear.losses(now)}
     assert losses[0, (3, 1)] == pytest.approx(fewer.cost - now.cost, rel=1e-3)
-
-
-def test_errors_of_left_out_neighbourhoods_are_those_of_fits_without_them():
-    linear = model()
-    folds, counts = folds_of(linear.match), [(6, 1), (5, 1)]
-    errors = linear.left_out(counts, folds)
-    subspace, shift = linear.subspace(counts)
-    penalty = linear.match.problem.regularisation
-    rows = linear.residuals + linear.slopes @ shift
-    ridge = np.sqrt(linear.ridge) * np.eye(len(shift))
-    held = [penalty.residuals(linear.match.problem.vector(linear.design)) + penalty.matrix @ shift, ridge @ shift]
-    kept, out = folds != 3, np.flatnonzero(folds[: linear.points] == 3)
-    columns = np.concatenate([linear.slopes[kept], penalty.matrix, ridge]) @ subspace
-    step = np.linalg.lstsq(columns, -np.concatenate([rows[kept], *held]), rcond=None)[0]
-    assert errors[3] == pytest.approx(float(np.sum((rows[out] + linear.slopes[out] @ subspace @ step) ** 2)), rel=1e-5)
-
-
-def test_neighbourhoods_are_contiguous_and_all_points_are_left_out_once():
-    linear = model()
-    footpoints = linear.match.state.footpoints
-    folds = folds_of(linear.match)[: linear.points]
-    assert set(folds) == set(range(FOLDS))
-    upper = np.flatnonzero(footpoints.side == 0)
-    along = folds[upper[np.argsort(footpoints.u[upper])]]
-    # a neighbourhood is a fortieth of a side
-    assert np.count_nonzero(np.diff(along)) < 40
 
 
 def test_structures_lose_parameters_step_by_step_and_the_best_of_a_size_comes_first():

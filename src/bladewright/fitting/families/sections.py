@@ -10,19 +10,18 @@ from scipy.special import chdtri
 
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
+from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE
 from bladewright.fitting.design_header import DesignHeader
 from bladewright.fitting.families.kinds import FitFamily
 from bladewright.fitting.families.section_shape import SectionShape, section_shape
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.section import first_section
 from bladewright.fitting.matching.scales import check_bounds
-from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
+from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, has_systematic_misfit, searched
 from bladewright.fitting.model_selection.match_target import MatchTarget
 from bladewright.fitting.model_selection.selection import (
-    LARGEST_OPEN,
     NEAR,
     determined,
-    has_systematic_misfit,
     selected_match,
 )
 from bladewright.fitting.model_selection.structure import structure_of
@@ -136,7 +135,7 @@ def _has_misfit(match: Match) -> bool:
     return has_systematic_misfit(match) or _worst_neighbourhood(match) > allowed * match.noise_estimate.noise**2
 
 
-def _is_far(match: Match, target: MatchTarget, open_limit: float = LARGEST_OPEN[0]) -> bool:
+def _is_far(match: Match, target: MatchTarget, open_limit: float = NEAR_EVERYWHERE) -> bool:
     """Whether a match is not what is asked for; `open_limit` is the largest distance where nothing is, of the chord."""
     limit = open_limit * match.model.chord if target.tolerance is None else target.tolerance
     short = target.parameters is not None and len(match.problem.paths) < target.parameters

@@ -178,6 +178,18 @@ class Match:
         return float(np.max(self.state.footpoints.distances[self.rows]))
 
 
+NOISE_CORRELATION = 0.15
+"""share of the misfit that neighbours have in common below which the misfit is noise."""
+FAR_OFF = 3.0
+"""standard deviations of the noise, by the median, beyond which the root mean square of a misfit is none of it."""
+
+
+def has_systematic_misfit(match: Match) -> bool:
+    """Whether a search ended at a misfit that is not noise: neighbours share it, or few points are far off."""
+    estimate = match.noise_estimate
+    return estimate.correlation > NOISE_CORRELATION or match.rms * match.model.chord > FAR_OFF * estimate.noise
+
+
 def searched(
     task: Task,
     start: Design,

@@ -28,26 +28,6 @@ ROUNDING = 1e-14
 """share of the largest diagonal entry of the normal equations by which their diagonal is raised: their rounding."""
 
 
-FOLDS = 10
-"""folds of the points (Kohavi 1995)"""
-NEIGHBOURHOODS = {2: (40, 1), 3: (10, 4)}
-"""neighbourhoods of a side along the chord and along the span, by dimension."""
-
-
-def folds_of(match: Match) -> NDArray[np.intp]:
-    """The folds (m,) of a match's residuals: contiguous neighbourhoods of points in turn; -1 of rows in none."""
-    footpoints = match.state.footpoints
-    along, across = NEIGHBOURHOODS[footpoints.points.shape[1]]
-    column = np.minimum((footpoints.u * along).astype(int), along - 1)
-    row = np.minimum((footpoints.v * across).astype(int), across - 1)
-    # neighbours across the span, and on the other side, are in other folds
-    fold = (column + 3 * row + 5 * footpoints.side) % FOLDS
-    both = np.concatenate([fold, fold[match.ends.near]])
-    found = np.full(len(match.problem.cloud_residuals.residuals(match.state)), -1)
-    found[: len(both)] = both
-    return found
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Prediction:
     """The least squares that a structure is predicted to leave."""
@@ -224,28 +204,6 @@ class LinearModel:
         """The change of a law's free parameters to the nearest ones of other counts."""
         self._law_subspace(law, counts)
         return self._known[law, counts][3]
-
-    def left_out(self, counts: Sequence[Counts], folds: NDArray[np.intp]) -> Reals:
-        """Sums of squares (f,) of the points' residuals in each fold, predicted from all points but those.
-
-        `folds` (m,) are the folds of the residuals, -1 of those in none.
-        """
-        subspace, shift = self.subspace(counts)
-        gram, right = self._normal_equations(subspace, shift)
-        columns = (self.slopes @ subspace) * self.roots[:, None]
-        rows = (self.residuals + self.slopes @ shift) * self.roots
-        found = []
-        for fold in range(int(np.max(folds)) + 1):
-            own = np.flatnonzero(folds == fold)
-            part, rest = columns[own], rows[own]
-            try:
-                step = -cho_solve(cho_factor(gram - part.T @ part), right - part.T @ rest)
-            except LinAlgError:
-                found.append(np.inf)
-                continue
-            points = own < self.points
-            found.append(float(np.sum((rest + part @ step)[points] ** 2)))
-        return np.array(found)
 
     def structured(self, counts: Sequence[Counts]) -> Any:
         """The structure with these numbers of control points."""

@@ -7,7 +7,7 @@ import numpy as np
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
 from bladewright.fitting.model_selection.elimination import reweighted
-from bladewright.fitting.model_selection.prediction import Prediction
+from bladewright.nurbs.basis import Reals
 
 REWEIGHTINGS = 6
 """searches of one structure with other weights at most"""
@@ -16,12 +16,12 @@ TOUCHED = 0.05
 same ratio as the one before."""
 
 
-def nearest_to_tolerance(task: Task, start: Match, prediction: Prediction, rich: Match, tolerance: float) -> Match:
-    """The match nearest to a tolerance [m] of searches of one structure, whose weights rise with the distances."""
-    best, design, noise, before = start, start.design, prediction.rms, np.inf
-    weights = np.where(prediction.weights > 0.0, prediction.weights, task.weights)
+def nearest_to_tolerance(task: Task, start: Match, weights: Reals, rich: Match, tolerance: float) -> Match:
+    """The match nearest to a tolerance [m] of searches of one structure, whose weights (n,) rise with the distances."""
+    best, design, noise, before = start, start.design, start.rms, np.inf
+    weights = np.where(weights > 0.0, weights, task.weights)
     for left in reversed(range(REWEIGHTINGS)):
-        if largest_of(best, rich) <= tolerance:
+        if best is not start and largest_of(best, rich) <= tolerance:
             break
         weighted = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
         try:
@@ -29,7 +29,7 @@ def nearest_to_tolerance(task: Task, start: Match, prediction: Prediction, rich:
         except (FitError, DesignError):
             break
         excess = largest_of(found, rich) - tolerance
-        best = found if tolerance + excess < largest_of(best, rich) else best
+        best = found if best is start or tolerance + excess < largest_of(best, rich) else best
         if (excess / before) ** left * excess > TOUCHED * tolerance:
             break
         design, noise, before = found.design, found.rms, excess

@@ -2,9 +2,8 @@
 
 The rich match is held by the regularisation of its laws (P-splines: Eilers and Marx 1996). About it the least squares
 of narrower structures are predicted; backward elimination ranks them (Draper and Smith 1998, section 15.3), and what
-is predicted to keep the aim with the fewest parameters is searched. The aim is a number of parameters, a largest
-distance, or else the smallest error of prediction where whole neighbourhoods of points are left out (Roberts et al.
-2017), within one standard error (Hastie, Tibshirani and Friedman 2009, section 7.10).
+is predicted to keep the aim with the fewest parameters is searched. The aim is a number of parameters, or a largest
+distance; where nothing is asked, the cloud's noise (Morozov 1966), or a distance that the rich match keeps.
 """
 
 from collections.abc import Callable
@@ -16,18 +15,20 @@ import numpy as np
 
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
+from bladewright.fitting.assessment.acceptance import EXACT, NEAR_EVERYWHERE
 from bladewright.fitting.assessment.estimates import undetermined_parameters
 from bladewright.fitting.free_parameters import corner_radii
-from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, evaluated, searched
+from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, evaluated, has_systematic_misfit, searched
 from bladewright.fitting.model_selection.elimination import (
     LARGEST_PREDICTED,
     PREDICTED,
     best_of_size,
     eliminated,
+    reweighted,
     reweighted_prediction,
 )
 from bladewright.fitting.model_selection.match_target import MatchTarget
-from bladewright.fitting.model_selection.prediction import FOLDS, LinearModel, Prediction, folds_of
+from bladewright.fitting.model_selection.prediction import LinearModel, Prediction
 from bladewright.fitting.model_selection.reshaping import Counts, reshaped, with_feasible_edges
 from bladewright.fitting.model_selection.reweighting import confirmed_match, largest_of, nearest_to_tolerance
 from bladewright.fitting.model_selection.rich_structures import rich_structure, wider_structure
@@ -43,8 +44,6 @@ FINAL_REDUCTION = 1e-3
 QUICK_POINTS, SEVERAL_POINTS, THOROUGH_POINTS = 1000, 4000, 12_000
 """points of the first search in space, of those that choose control points, which need every row of points, and of the
 last one: time is proportional to them."""
-NOISE_CORRELATION = 0.15
-"""share of the misfit that neighbours have in common below which the misfit is noise."""
 WEAK_REGULARISATION = 0.1
 """factor of the regularisation where a match is only improved."""
 REFUSED_MARGIN = 6.0
@@ -84,24 +83,22 @@ def selected_match(
     reason = CORNERS_HELD_NOTE if held else ""
     if held:
         several, many = _with_corners_held(several), _with_corners_held(many)
-    selection = _Selection(task=several, samples=(like or structure_of(first)).samples)
+    selection = _Selection(task=several, samples=(like or structure_of(first)).samples, first=found.design)
     if task.dimension == 3 and guessed:
         # laws that need no control points along the span begin as constants
         found = replace(selection, task=task.thinned(QUICK_POINTS)).well_predicted(found)
+        selection = replace(selection, first=found.design)
     near = NEAR * found.model.chord
     if target.open and found.maximum < near:
         rich = found
     elif target.open and task.dimension == 2:
         rich = selection.rich(found, lambda each: each.maximum <= near)
     else:
-        aim = LARGEST_OPEN[0] * found.model.chord if target.open else target.tolerance or np.inf
+        aim = NEAR_EVERYWHERE * found.model.chord if target.open else target.tolerance or np.inf
         rich = selection.rich(found, partial(selection.holds, tolerance=aim))
     if len(rich.rows) < len(several.points):
         # no richer one has a shape, or none is needed: the first match, of few points, stands
         rich = evaluated(several, rich.design, noise=rich.rms)
-    if task.dimension == 3 and _refused(rich):
-        selection = selection.with_margin()
-        many = replace(many, margin_factor=selection.task.margin_factor)
     if target.parameters is not None:
         sized = selection.of_size(rich, target.parameters)
         found = sized if len(sized.problem.paths) <= target.parameters else found
@@ -116,13 +113,15 @@ def selected_match(
 
 
 def _searched_further(task: Task, match: Match) -> Match:
-    """A match searched on, or as it is where that cannot be built any more, or finer knots leave it no shape."""
+    """A match searched on, or as it is where that cannot be built, or is far from some points, and the match is not."""
     try:
         found = searched(task, match.design, noise=match.rms, min_reduction=FINAL_REDUCTION)
+        unasked = NEAR_EVERYWHERE * match.model.chord
+        if match.maximum <= unasked < found.maximum or (_refused(found) and not _refused(match)):
+            found = evaluated(task, match.design, noise=match.rms)
     except FitError:
         return match
-    lost = task.dimension == 3 and _refused(found) and not _refused(match)
-    return match if lost else found
+    return found
 
 
 def determined(task: Task, match: Match) -> tuple[Match, str]:
@@ -145,7 +144,7 @@ def _free_but(task: Task, held: tuple[str, ...], design: Design) -> tuple[str, .
 def _of_structure(several: Task, many: Task, found: Match, structure: Structure, *, guessed: bool) -> Match:
     """The match of a given structure: from a richer one where it is not found else."""
     if guessed:
-        selection = _Selection(task=several, samples=structure.samples)
+        selection = _Selection(task=several, samples=structure.samples, first=found.design)
         tried = [found] if structure_of(found.design) == structure else []
         starts = [found] if not tried else []
         if not tried or has_systematic_misfit(found):
@@ -166,11 +165,6 @@ def _of_structure(several: Task, many: Task, found: Match, structure: Structure,
     return searched(weak, found.design, rounds=QUICK_ROUNDS)
 
 
-def has_systematic_misfit(match: Match) -> bool:
-    """Whether a search ended at a misfit that is not noise."""
-    return match.noise_estimate.correlation > NOISE_CORRELATION
-
-
 TRIED_PARAMETERS, MOST_TRIED = 100, 4
 """parameters of the structures of one size that are searched, in all, as predictions are linear; and structures at most
 (`MOST_TRIED`)."""
@@ -180,17 +174,16 @@ NEAR_RICH = 1.25
 """largest distance that a match keeps whose misfit is no noise and of which nothing is asked, of that of a rich one."""
 NOISE_QUANTILE = 1.645
 """standard errors by which a misfit may pass the noise, which one of pure noise does once in twenty times."""
+AIMS = (0.5 * EXACT, 0.8 * NEAR_EVERYWHERE)
+"""largest distances, of the chord, that matches are predicted to have of which nothing is asked: the first that can be
+kept. They are parts of what is asked of the matches themselves, as predictions are linear."""
+TRIED_SHARES = (1.0, 0.75, 0.5, 0.25, 0.0)
+"""which of the structures that are predicted to do are searched, from that of fewest parameters, until one does"""
 NEAR = 5e-5
 """largest distance, of the chord, from which rich structures get more control points where nothing is asked for."""
-LARGEST_OPEN = (4e-4, 8e-4)
-"""the same of a match, tried in turn, and of blades, which take ten times as long: a match nearer than 5e-4 passes."""
 RICHER_GAIN = 0.6
 """ratio of the misfits of two rich structures above which a richer one is of no use: a third as many control points
 again bring a cubic spline nearer by (3/4)^4, a third (de Boor 1978, chapter 12)."""
-MOST_FAILURES = 3
-"""structures in a row that are searched and miss a tolerance, each half as far away as the last"""
-FIRST_SHARE = {2: 1.0, 3: 0.5}
-"""share of the way to the fewest parameters that the first of these goes, by dimension: blades are less linear."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -200,10 +193,8 @@ class _Selection:
     task: Task
     samples: int
     """along the chord at least"""
-
-    def with_margin(self) -> "_Selection":
-        """The same with edge radii kept further from what is refused."""
-        return replace(self, task=replace(self.task, margin_factor=REFUSED_MARGIN * self.task.margin_factor))
+    first: Design
+    """what searches begin from where predictions have no shape"""
 
     def holds(self, match: Match, tolerance: float) -> bool:
         """Whether a match of the same structure is predicted to keep a tolerance [m] where points are weighed so."""
@@ -248,85 +239,89 @@ class _Selection:
                 return known[each.counts]
 
             shaped = filter(None, map(once, best_of_size(model, most)))
-            built = filter(self._is_built, islice(shaped, MOST_TRIED))
+            built = filter(None, map(self._built, islice(shaped, MOST_TRIED)))
             nearest = min(islice(built, count), key=lambda each: each.misfit, default=None)
             if nearest is None or (best is not None and nearest.misfit >= best.misfit):
                 break
             best, about = nearest, self._widened(nearest)
         return best or min(filter(None, known.values()), key=lambda each: each.misfit, default=rich)
 
-    def _is_built(self, match: Match) -> bool:
-        return self.task.dimension == 2 or not _refused(match)
+    def _built(self, match: Match) -> Match | None:
+        """A match that can be built: where it is refused, one whose edge radii are kept further from what is."""
+        if not _refused(match):
+            return match
+        weights = match.problem.cloud_residuals.roots**2
+        weights = np.where(weights > 0.0, weights, self.task.weights)
+        task = replace(self.task, margin_factor=REFUSED_MARGIN * self.task.margin_factor, weights=weights)
+        try:
+            found = searched(task, match.design, noise=match.rms, rounds=1, min_reduction=ROUGH_REDUCTION)
+        except FitError:
+            return None
+        return None if _refused(found) else found
 
     def well_predicted(self, rich: Match) -> Match:
-        """The match of fewest parameters that predicts points left out as well as any, and is well conditioned."""
-        model, folds = self._model(rich), folds_of(rich)
+        """The match of fewest parameters that is at the cloud's noise, or where its misfit is none, near everywhere."""
+        model = self._model(rich)
         candidates = eliminated(model, 0)
-        if not candidates:
-            return rich
-        errors = np.array([model.left_out(each.counts, folds) for each in candidates])
-        best = int(np.argmin(np.sum(errors, axis=1)))
-        limit = np.sum(errors[best]) + np.sqrt(FOLDS) * np.std(errors[best])
-        near = max(NEAR_RICH * candidates[0].largest, NEAR)
-        # noise that is known takes the place of errors of prediction (Morozov 1966)
+        # noise that is known takes the place of an aim (Morozov 1966)
         noise = rich.noise_estimate.noise / model.chord * (1.0 + NOISE_QUANTILE / np.sqrt(2.0 * model.points))
-        chosen = [
-            each
-            for each, error in zip(candidates, np.sum(errors, axis=1), strict=True)
-            if (error <= limit and each.largest <= near if has_systematic_misfit(rich) else each.rms <= noise)
-        ] or candidates[:1]
-        tried = (self._searched(model, each) for each in (chosen[-1], chosen[len(chosen) // 2], chosen[0]))
-        return next((each for each in tried if each and self._is_built(each)), rich)
+        nearest = min((each.largest for each in candidates), default=0.0)
+        aim = next((each for each in AIMS if nearest <= each), NEAR_RICH * nearest)
+        near = max(_open_limit(rich), NEAR_RICH * largest_of(rich, rich))
+        systematic = has_systematic_misfit(rich)
+        chosen = [each for each in candidates if (each.largest <= aim if systematic else each.rms <= noise)]
+        chosen = chosen or candidates[:1]
+        tried: list[Match] = []
+        for number in dict.fromkeys(int(share * (len(chosen) - 1)) for share in TRIED_SHARES if chosen):
+            fresh = self._searched(model, chosen[number])
+            found = None if fresh is None else self._built(fresh)
+            if found is not None:
+                tried.append(found)
+                if not has_systematic_misfit(found) or largest_of(found, rich) <= near:
+                    break
+        return min(tried, key=lambda each: largest_of(each, rich), default=rich)
 
     def near_everywhere(self, rich: Match) -> Match:
-        """The match that predicts well, or one with more parameters where it is far from some points."""
-        found = self.well_predicted(rich)
-        for share in LARGEST_OPEN:
-            if not has_systematic_misfit(found) or largest_of(found, rich) <= share * found.model.chord:
-                break
-            nearer, _ = self.within(rich, share * found.model.chord)
-            if largest_of(nearer, rich) < largest_of(found, rich) and not _refused(nearer):
-                found = nearer
-        return found
+        """The match that predicts well, or one that is nearer where that is far from some points."""
+        found, limit = self.well_predicted(rich), _open_limit(rich)
+        if not has_systematic_misfit(found) or largest_of(found, rich) <= limit:
+            return found
+        weights = reweighted(self.task.weights, found.state.footpoints.distances, limit)
+        nearer = nearest_to_tolerance(self.task, found, weights, rich, limit)
+        if largest_of(nearer, rich) > limit or _refused(nearer):
+            nearer, _ = self.within(rich, limit)
+        return nearer if largest_of(nearer, rich) < largest_of(found, rich) and not _refused(nearer) else found
 
     def within(self, rich: Match, tolerance: float) -> tuple[Match, str]:
         """The match of fewest parameters found that keeps a tolerance [m]; the nearest, and why, where none does."""
-        if largest_of(rich, rich) > tolerance and not has_systematic_misfit(rich):
+        found = rich if largest_of(rich, rich) <= tolerance and not _refused(rich) else None
+        nearest = rich
+        if has_systematic_misfit(rich) or largest_of(rich, rich) <= tolerance:
+            tried = self._narrowed(rich, rich, tolerance)
+            while tried and largest_of(tried[-1], rich) <= tolerance:
+                found, tried = tried[-1], self._narrowed(tried[-1], rich, tolerance)
+            nearest = min([rich, *tried], key=lambda each: largest_of(each, rich))
+        if found is not None:
+            return found, ""
+        if not has_systematic_misfit(nearest):
             return self.well_predicted(rich), NOISE_REASON.format(1e3 * rich.noise_estimate.noise)
-        best, nearest, about, wide = None, rich, rich, False
-        share, failed, missed, selection = FIRST_SHARE[self.task.dimension], 0, 0, self
-        while failed < MOST_FAILURES:
-            model = self._model(about)
-            relative = tolerance / model.chord
-            fewer = eliminated(model, 0, relative)
-            kept = [each for each in fewer if each.largest <= PREDICTED * relative and each.parameters > missed]
-            if best is not None:
-                narrower = [each for each in fewer if missed < each.parameters < len(best.problem.paths)]
-                kept = [each for each in narrower if each in kept] or narrower[:1]
-            elif not kept and not wide:
-                about, wide = self._widened(about), True
-                continue
-            elif not kept and fewer:
-                kept = [min(fewer, key=lambda each: each.largest)]
-            if not kept:
+        return nearest, "no structure was found that keeps the tolerance"
+
+    def _narrowed(self, about: Match, rich: Match, tolerance: float) -> list[Match]:
+        """Matches of fewer parameters by predictions about one, with more until the last keeps a tolerance [m]."""
+        model, most = self._model(about), len(about.problem.paths) - (about is not rich)
+        relative = tolerance / model.chord
+        fewer = [each for each in eliminated(model, 0, relative) if each.parameters <= most]
+        kept = [each for each in fewer if each.largest <= PREDICTED * relative]
+        kept = kept or sorted(fewer, key=lambda each: each.largest)[:1]
+        found: list[Match] = []
+        for number in dict.fromkeys(int(share * (len(kept) - 1)) for share in TRIED_SHARES if kept):
+            start = self._start(model, kept[number])
+            match = start and self._built(nearest_to_tolerance(self.task, start, kept[number].weights, rich, tolerance))
+            found += [match] if match else []
+            if match and largest_of(match, rich) <= tolerance:
                 break
-            tried = kept[int(np.ceil(share * len(kept))) - 1]
-            start = selection._start(model, tried)
-            found = None if start is None else nearest_to_tolerance(selection.task, start, tried, rich, tolerance)
-            if found is not None and largest_of(found, rich) <= tolerance:
-                about = found
-                if not self._is_built(found):
-                    selection, failed = selection.with_margin(), failed + 1
-                    continue
-                best = found
-                share, failed, missed = min(1.0, 1.5 * share), 0, 0
-                continue
-            share, failed, missed = 0.5 * share, failed + 1, tried.parameters
-            if best is None and found is not None and largest_of(found, rich) < largest_of(about, rich):
-                if found.noise_estimate.correlation < NOISE_CORRELATION:
-                    return self.well_predicted(rich), NOISE_REASON.format(1e3 * found.noise_estimate.noise)
-                nearest, about, wide, failed, missed = found, self._widened(found), True, 0, 0
-        return (best, "") if best is not None else (nearest, "no structure was found that keeps the tolerance")
+        return found
 
     def _model(self, match: Match) -> LinearModel:
         self.task.progress("structure")
@@ -353,12 +348,22 @@ class _Selection:
             return None
 
     def _start(self, model: LinearModel, prediction: Prediction) -> Match | None:
-        """The predicted design or the one nearest to the rich match, as far from that predictions go too far."""
+        """The predicted design or the nearest to the rich match; the first design in its structure if none has a shape.
+
+        Predictions that go too far are no nearer than the rich match.
+        """
+        structure = model.structured(prediction.counts).with_samples(self.samples)
+        designs = (
+            partial(model.designed, prediction),
+            partial(model.designed, replace(prediction, change=np.zeros_like(prediction.change))),
+            partial(reshaped, self.first, structure),
+        )
         found: Match | None = None
-        for change in (prediction.change, np.zeros_like(prediction.change)):
+        for number, design in enumerate(designs):
+            if number == len(designs) - 1 and found is not None:
+                break
             try:
-                design = model.designed(replace(prediction, change=change))
-                fresh = evaluated(self.task, design, noise=prediction.rms)
+                fresh = evaluated(self.task, design(), noise=prediction.rms)
             except (DesignError, FitError):
                 continue
             found = fresh if found is None or fresh.misfit < found.misfit else found
@@ -368,12 +373,19 @@ class _Selection:
 
 
 def _refused(match: Match) -> bool:
-    """Whether a design that searches allow is refused when it is built: its edge radii need a larger margin."""
+    """Whether a blade that searches allow is refused when it is built: its edge radii need a larger margin."""
+    if match.state.footpoints.points.shape[1] == 2:
+        return False
     try:
         match.design.build()
     except DesignError:
         return True
     return False
+
+
+def _open_limit(rich: Match) -> float:
+    """The largest distance [m] of a match of which nothing is asked."""
+    return (EXACT if rich.maximum <= EXACT * rich.model.chord else NEAR_EVERYWHERE) * rich.model.chord
 
 
 def _ends_in_rows(match: Match) -> bool:
