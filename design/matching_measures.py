@@ -13,8 +13,9 @@ from scipy.spatial import cKDTree
 import bladewright as bw
 from bladewright.errors import BladewrightError
 
-GRID = (1201, 121)
-"""samples along and across a face from which nearest places are searched"""
+GRID = (801, 401)
+"""samples along and across a face from which nearest places are searched: with 121 across the other side of a long,
+thin blade was nearer than the next sample, and a search from there ended on the rim, 6e-4 of the chord off"""
 STEPS = 30
 """Gauss-Newton steps of a nearest place at most"""
 
