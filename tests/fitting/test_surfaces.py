@@ -5,7 +5,7 @@ import pytest
 
 import bladewright as bw
 from bladewright.fitting.freeform.net import Net
-from bladewright.fitting.freeform.search import Problem, Target, placed
+from bladewright.fitting.freeform.search import Problem, placed
 from bladewright.nurbs.basis import uniform_knots
 from bladewright.nurbs.closest import closest_on_surface
 
@@ -86,11 +86,11 @@ def test_the_gradient_is_that_of_central_differences(weighted):
         knots=(surface.knots_u, surface.knots_v),
         degrees=(3, 3),
         points=surface.control_points.reshape(-1, 3).copy(),
-        log_weights=0.2 * rng.normal(size=20) if weighted else None,
+        log_weights=0.2 * rng.normal(size=20) if weighted else np.zeros(20),
         weighted=weighted,
     )
     points = net.shape(U[:60], V[:60]) + 0.02 * rng.normal(size=(60, 3))
-    problem = Problem(placed(net, Target(points=points, weights=np.ones(60))), stiffness=1e-3)
+    problem = Problem(placed(net, points), stiffness=1e-3)
     exact = problem.derivatives(problem.start)[0].T @ problem.values(problem.start)[0]
     step = 1e-6
     for e in rng.normal(size=(8, len(problem.start))):

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bladewright.errors import FitError
-from bladewright.fitting.freeform.search import Options, S, ShapeMatch, Target, placed
+from bladewright.fitting.freeform.search import Options, S, ShapeMatch
 from bladewright.nurbs.basis import Reals
 
 
@@ -77,12 +78,21 @@ class FreeformFit:
         return self.converged and (self.tolerance is None or self.maximum <= self.tolerance)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Unit:
-    """The unit in which points are fitted: about their mean, in their largest extent."""
+    """The unit in which points (n, d) are fitted: about their mean, in their largest extent."""
 
-    centre: Reals
-    extent: float
+    points: Reals
+
+    @cached_property
+    def centre(self) -> Reals:
+        """Mean (d,) of the points."""
+        return np.asarray(np.mean(self.points, axis=0))
+
+    @cached_property
+    def extent(self) -> float:
+        """Largest extent along an axis."""
+        return float(np.ptp(self.points, axis=0).max())
 
     def scaled(self, points: ArrayLike) -> Reals:
         """Points (..., d) in extents about the centre."""
@@ -93,34 +103,21 @@ class Unit:
         return points * self.extent + self.centre
 
 
-def unit_of(points: Reals) -> Unit:
-    """The unit of points (n, d)."""
-    return Unit(centre=np.mean(points, axis=0), extent=float(np.ptp(points, axis=0).max()))
-
-
-def figures_of(
-    match: ShapeMatch[S], inliers: NDArray[np.bool_], points: Reals, extent: float, *notes: str
-) -> tuple[Reals, dict[str, Any]]:
-    """Parameters (n, k) of the nearest places of all points (n, d), and the figures of the fit."""
-    final = placed(match.shape, Target(points=points, weights=np.ones(len(points))))
-    parameters = final.parameters.copy()
-    nearer = match.distances < final.distances[inliers]
-    parameters[np.flatnonzero(inliers)[nearer]] = match.parameters[nearer]
-    final = replace(final, parameters=parameters)
-    values = match.singular_values
-    if match.rank < len(values):
+def figures_of(match: ShapeMatch[S], extent: float, *notes: str) -> dict[str, Any]:
+    """The figures of a fit."""
+    if match.rank < len(match.singular_values):
         notes += (
             (
-                f"the points determine {match.rank} of {len(values)} directions of the unknowns: the others bend the "
-                "shape as little as they can"
+                f"the points determine {match.rank} of {len(match.singular_values)} directions of the unknowns: the "
+                "others bend the shape as little as they can"
             ),
         )
-    return parameters, {
-        "distances": final.distances * extent,
-        "inliers": inliers,
+    return {
+        "distances": match.distances * extent,
+        "inliers": match.inliers,
         "iterations": match.evaluations,
         "converged": match.converged,
-        "singular_values": values,
+        "singular_values": match.singular_values,
         "rank": match.rank,
         "noise": match.noise * extent,
         "notes": notes,

@@ -9,13 +9,13 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import null_space
+from scipy.linalg import block_diag, null_space
 from scipy.sparse import csr_array
 
-from bladewright.errors import FitError
+from bladewright.errors import FitError, GeometryError
 from bladewright.fitting.freeform.search import Shape
 from bladewright.numerics.quadrature import panels
-from bladewright.nurbs.basis import Reals, basis, breaks
+from bladewright.nurbs.basis import Reals, basis, breaks, checked_knots, uniform_knots
 from bladewright.nurbs.blossom import knot_change
 from bladewright.nurbs.closest import Descents, Places
 from bladewright.nurbs.collocation import collocation
@@ -23,12 +23,17 @@ from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.refine import Direction, inserted
 from bladewright.nurbs.surface import Surface
 
+FIRST_STIFFNESS = 1e-6
+"""weight of the bending of a first net: enough to hold control points that no point is near (design/freeform.md)"""
 TENSION = 0.01
-"""weight of squared first derivatives, of that of squared second ones: it holds stretches that leave the points."""
+"""weight of squared first derivatives, of that of squared second ones: with none, surfaces swing twice as far past
+their points, with ten times as much their corners are cut (design/freeform.md)"""
 WEIGHT_REGULARISATION = 1e-10
-"""cost of a unit of a weight's logarithm, in extents of the points: it holds weights without effect."""
+"""cost of a unit of a weight's logarithm, in extents of the points: it holds weights without effect, and is rounding
+beside distances (design/freeform.md)"""
 LAST_STEP = 1e-10
-"""last step of a descent, in the parameters of a patch: distances of exact points are exact to it."""
+"""last step of a descent, in the parameters of a patch: distances of exact points are exact to it
+(design/freeform.md)"""
 DIRECTIONS: tuple[Direction, Direction] = ("u", "v")
 """names of the directions of a surface"""
 
@@ -42,13 +47,15 @@ class Net(Shape):
     degrees: tuple[int, ...]
     points: Reals
     """(N, d) control points, the last direction fastest; of a closed curve each once"""
-    log_weights: Reals | None = None
-    """(N,) logarithms of the weights, or None where all are one"""
+    log_weights: Reals
+    """(N,) logarithms of the weights"""
     weighted: bool = False
     """whether the weights are unknown"""
     held: Literal["none", "corners", "boundary"] = "none"
     """control points that do not move"""
     closed: bool = False
+    ends: tuple[int, ...] = ()
+    """points whose places are held at the two ends of a curve; none where empty"""
 
     @property
     def counts(self) -> tuple[int, ...]:
@@ -107,54 +114,51 @@ class Net(Shape):
     def bending_root(self) -> Reals:
         """(b, N) matrix whose product with the control points has the bending as its sum of squares.
 
-        The bending is the integral of all squared second derivatives by the parameters (the thin-plate energy: Duchon
-        1977), and some of the first: without it, a stretch that leaves the points would cost nothing.
+        The bending is the integral of all squared second derivatives by the parameters, and a part of the first: a
+        thin plate under tension (Duchon 1977, Franke 1985).
         """
         mass, slope, bend = zip(
             *(_products(knots, degree) for knots, degree in zip(self.clamped, self.degrees, strict=True)), strict=True
         )
-        if len(mass) == 1:
-            energy = bend[0] + TENSION * slope[0]
-        else:
-            energy = np.kron(bend[0], mass[1]) + 2.0 * np.kron(slope[0], slope[1]) + np.kron(mass[0], bend[1])
-            energy += TENSION * (np.kron(slope[0], mass[1]) + np.kron(mass[0], slope[1]))
+        energy = bend[0] + TENSION * slope[0]
+        if len(mass) == 2:
+            energy = (
+                np.kron(energy, mass[1])
+                + 2.0 * np.kron(slope[0], slope[1])
+                + np.kron(mass[0], bend[1] + TENSION * slope[1])
+            )
         values, vectors = np.linalg.eigh(self.spread.T @ energy @ self.spread)
         return np.asarray(np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T)
 
     @property
     def unknowns(self) -> Reals:
         """Control points that move, then what changes the shape of the logarithms of the weights."""
-        logs = np.zeros(len(self.points)) if self.log_weights is None else self.log_weights
-        return np.concatenate([self.points[self.free].ravel(), self.gauge.T @ logs])
+        return np.concatenate([self.points[self.free].ravel(), self.gauge.T @ self.log_weights])
 
     @property
     def freed(self) -> Net:
         """The net with unknown weights."""
-        logs = np.zeros(len(self.points)) if self.log_weights is None else self.log_weights
-        return replace(self, weighted=True, log_weights=logs)
+        return replace(self, weighted=True)
 
     def changed(self, unknowns: Reals) -> Net:
         """The net with other values of its unknowns."""
-        points, logs = self.points.copy(), self.log_weights
-        moved = int(self.free.sum()) * points.shape[1]
+        points, moved = self.points.copy(), self.points[self.free].size
         points[self.free] = unknowns[:moved].reshape(-1, points.shape[1])
-        if logs is not None and self.weighted:
-            logs = logs + self.gauge @ (unknowns[moved:] - self.gauge.T @ logs)
+        logs = self.log_weights + self.gauge @ (unknowns[moved:] - self.gauge.T @ self.log_weights)
         return replace(self, points=points, log_weights=logs)
 
     @cached_property
     def shape(self) -> Curve | Surface:
         """The curve or surface."""
-        points, weights = self.spread @ self.points, None
-        if self.log_weights is not None:
-            own = np.exp(self.log_weights)
-            weights = self.spread @ own
-            points = (self.spread @ (own[:, None] * self.points)) / weights[:, None]
+        own = np.exp(self.log_weights)
+        weights = self.spread @ own
+        points = (self.spread @ (own[:, None] * self.points)) / weights[:, None]
+        given = weights.reshape(self.counts if len(self.knots) == 2 else -1) if self.log_weights.any() else None
         if len(self.knots) == 1:
-            return Curve(control_points=points, knots=self.clamped[0], degree=self.degrees[0], weights=weights)
+            return Curve(control_points=points, knots=self.clamped[0], degree=self.degrees[0], weights=given)
         return Surface(
             control_points=points.reshape(*self.counts, -1),
-            weights=None if weights is None else weights.reshape(self.counts),
+            weights=given,
             knots_u=self.knots[0],
             knots_v=self.knots[1],
             degree_u=self.degrees[0],
@@ -180,6 +184,8 @@ class Net(Shape):
             seam = np.flatnonzero((found.u <= low) | (found.u >= high))
             past = search.nearest(points[seam], places(low + high - parameters[seam]), converged=LAST_STEP)
             parameters[seam, 0] = np.where(past.square < found.square[seam], past.u, found.u[seam])
+        for point, end in zip(self.ends, self.domain, strict=False):
+            parameters[point] = end
         return parameters
 
     def tangents(self, parameters: Reals) -> tuple[Reals, Reals, NDArray[np.bool_]]:
@@ -197,7 +203,7 @@ class Net(Shape):
         matrix = collocation(self.shape, *parameters.T)
         if self.closed:
             matrix = csr_array(matrix @ csr_array(self.spread))
-        if self.log_weights is None:
+        if not self.log_weights.any():
             return matrix
         scaled = csr_array(matrix * np.exp(self.log_weights)[None, :])
         return csr_array(scaled * (1.0 / scaled.sum(axis=1))[:, None])
@@ -214,18 +220,15 @@ class Net(Shape):
 
     def bending(self, stiffness: float) -> tuple[Reals, Reals]:
         """Residuals (b,) whose squares are the bending, times its weight, and their derivatives (b, n)."""
-        root = np.sqrt(stiffness) * self.bending_root if stiffness else np.zeros((0, len(self.points)))
-        logs, dimension = self.unknowns[int(self.free.sum()) * self.points.shape[1] :], self.points.shape[1]
-        slopes = np.zeros((len(root) * dimension + len(logs), int(self.free.sum()) * dimension + len(logs)))
-        slopes[: len(root) * dimension, : slopes.shape[1] - len(logs)] = np.kron(root[:, self.free], np.eye(dimension))
-        slopes[len(root) * dimension :, slopes.shape[1] - len(logs) :] = WEIGHT_REGULARISATION * np.eye(len(logs))
-        return np.concatenate([(root @ self.points).ravel(), WEIGHT_REGULARISATION * logs]), slopes
+        root, logs = np.sqrt(stiffness) * self.bending_root, WEIGHT_REGULARISATION * self.gauge.T
+        slopes = block_diag(np.kron(root[:, self.free], np.eye(self.points.shape[1])), logs @ self.gauge)
+        return np.concatenate([(root @ self.points).ravel(), logs @ self.log_weights]), slopes
 
-    def through(self, points: Reals, shares: Reals, stiffness: float) -> Net:
-        """The net nearest to points (m, d) at shares (m, k) of the domain, with a weight of its bending."""
+    def through(self, points: Reals, shares: Reals) -> Net:
+        """The net nearest to points (m, d) at shares (m, k) of the domain, and a little stiff."""
         low, high = self.domain
         matrix = self.basis(low + (high - low) * shares)
-        normal = (matrix.T @ matrix).toarray() / len(points) + stiffness * self.bending_root.T @ self.bending_root
+        normal = (matrix.T @ matrix).toarray() / len(points) + FIRST_STIFFNESS * self.bending_root.T @ self.bending_root
         # a trace of the identity holds control points that neither points nor bending determine
         normal += 1e-14 * np.eye(len(normal))
         return replace(self, points=np.linalg.solve(normal, np.asarray(matrix.T @ points) / len(points)))
@@ -237,42 +240,69 @@ class Net(Shape):
         along = DIRECTIONS[direction]
         shape = inserted(self.shape, knots) if isinstance(self.shape, Curve) else inserted(self.shape, knots, along)
         finer = net_of(shape, closed=self.closed, knots=tuple(every))
-        return replace(finer, held=self.held, weighted=self.weighted)
+        return replace(finer, held=self.held, weighted=self.weighted, ends=self.ends)
 
 
 def net_of(shape: Curve | Surface, *, closed: bool = False, knots: tuple[Reals, ...] = ()) -> Net:
     """A curve or surface as a net; of a closed curve the nearest on its distinct knots."""
-    homogeneous = shape.homogeneous.reshape(-1, shape.homogeneous.shape[-1])
-    dimension, weighted = shape.control_points.shape[-1], shape.weights is not None
+    coordinates = shape.homogeneous.reshape(-1, shape.homogeneous.shape[-1])
+    if shape.weights is None:
+        coordinates = np.concatenate([coordinates, np.ones((len(coordinates), 1))], axis=1)
     degrees: tuple[int, ...]
     own: tuple[Reals, ...]
     if isinstance(shape, Curve):
         degrees, own = (shape.degree,), (breaks(shape.knots) if closed else shape.knots,)
     else:
         degrees, own = (shape.degree_u, shape.degree_v), (shape.knots_u, shape.knots_v)
+    knots, dimension = knots or own, coordinates.shape[1] - 1
     if closed:
-        empty = Net(knots=knots or own, degrees=degrees, points=np.zeros((len(own[0]) - 1, dimension)), closed=True)
-        homogeneous = np.linalg.lstsq(empty.spread, homogeneous, rcond=None)[0]
-    points = homogeneous[:, :dimension] / (homogeneous[:, dimension:] if weighted else 1.0)
-    logs = np.log(homogeneous[:, dimension]) if weighted else None
-    return Net(knots=knots or own, degrees=degrees, points=points, log_weights=logs, closed=closed)
+        count = len(knots[0]) - 1
+        empty = Net(
+            knots=knots, degrees=degrees, points=np.zeros((count, dimension)), log_weights=np.zeros(count), closed=True
+        )
+        coordinates = np.linalg.lstsq(empty.spread, coordinates, rcond=None)[0]
+    logs = np.zeros(len(coordinates)) if shape.weights is None else np.log(coordinates[:, -1])
+    points = coordinates[:, :-1] / coordinates[:, -1:]
+    return Net(knots=knots, degrees=degrees, points=points, log_weights=logs, closed=closed)
 
 
-def log_weights(weights: str | ArrayLike, counts: tuple[int, ...]) -> Reals | None:
-    """Logarithms of given weights of a shape (n,) or (n_u, n_v), flattened; None for a word."""
-    if isinstance(weights, str):
-        return None
-    given = np.array(weights, dtype=np.float64)
-    if given.shape != counts or not (given > 0.0).all():
-        raise FitError(f"weights of shape {given.shape} were given: positive ones of shape {counts} are needed")
-    return np.log(given).ravel()
+def empty_net(
+    degrees: tuple[int, ...],
+    counts: tuple[int, ...],
+    knots: tuple[ArrayLike, ...] | None,
+    weights: str | ArrayLike,
+    dimension: int,
+    *,
+    closed: bool = False,
+) -> Net:
+    """A net whose control points are all zero, on uniform or given knots; raises FitError."""
+    if knots is not None:
+        ends = (1,) if closed else tuple(degree + 1 for degree in degrees)
+        counts = tuple(len(np.atleast_1d(own)) - end for own, end in zip(knots, ends, strict=True))
+    try:
+        own = [uniform_knots(count, degree) for count, degree in zip(counts, degrees, strict=True)]
+        if knots is not None and not closed:
+            own = [np.asarray(each, dtype=np.float64) for each in knots]
+        own = [checked_knots(*each, "knots") for each in zip(own, degrees, counts, strict=True)]
+    except GeometryError as error:
+        what = "curve" if len(degrees) == 1 else "surface"
+        raise FitError(f"a {what} of degree {degrees} with {counts} control points: {error}") from error
+    if closed:
+        own = [np.linspace(0.0, 1.0, counts[0] + 1) if knots is None else np.array(knots[0], dtype=np.float64)]
+        if not (np.diff(own[0]) > 0.0).all():
+            raise FitError(f"the knots {own[0].tolist()} of a closed curve must be distinct and increasing; sort them")
+    logs = np.zeros(counts)
+    if not isinstance(weights, str):
+        given = np.array(weights, dtype=np.float64)
+        if given.shape != counts or not (given > 0.0).all():
+            raise FitError(f"weights of shape {given.shape} were given: positive ones of shape {counts} are needed")
+        logs = np.log(given)
+    points = np.zeros((logs.size, dimension))
+    return Net(knots=tuple(own), degrees=degrees, points=points, log_weights=logs.ravel(), closed=closed)
 
 
-def _products(knots: Reals, degree: int) -> tuple[Reals, Reals, Reals]:
+def _products(knots: Reals, degree: int) -> list[Reals]:
     """Integrals (n, n) of products of the basis functions, of their first and of their second derivatives."""
     at, weight = panels(breaks(knots), degree + 1)
-    found = []
-    for order in range(3):
-        values = basis(knots, degree, at, order) if order <= degree else np.zeros((len(at), len(knots) - degree - 1))
-        found.append(np.asarray(values.T @ (weight[:, None] * values)))
-    return found[0], found[1], found[2]
+    orders = [basis(knots, degree, at, order) for order in range(3)]
+    return [np.asarray(values.T @ (weight[:, None] * values)) for values in orders]

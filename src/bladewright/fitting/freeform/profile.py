@@ -1,33 +1,185 @@
-"""Profiles fitted by a camber line and a half thickness around it."""
+"""Profiles fitted by a camber line and a half thickness along its normals."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial import ConvexHull, QhullError
+from scipy.linalg import block_diag
+from scipy.spatial import QhullError, cKDTree
 
 from bladewright.errors import FitError
 from bladewright.fitting.freeform.fits import (
     FreeformFit,
+    Unit,
     checked_ends,
     checked_options,
     checked_points,
     figures_of,
-    unit_of,
 )
-from bladewright.fitting.freeform.net import Net
-from bladewright.fitting.freeform.profile_shape import DEGREE, CamberThickness, abscissae_of
-from bladewright.fitting.freeform.search import Target, matched_by_stages
-from bladewright.numerics.elementary import length, turned_left
-from bladewright.nurbs.basis import Reals, uniform_knots
+from bladewright.fitting.freeform.net import LAST_STEP, Net
+from bladewright.fitting.freeform.search import STIFFNESSES, Shape, matched_by_stages, placed
+from bladewright.fitting.initial_guess.slices import PLACES, PlanePoints, longest_chord, slices_of
+from bladewright.numerics.elementary import Array, length, turned_left
+from bladewright.nurbs.basis import Reals, basis, uniform_knots
 from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.descent import descended
+from bladewright.nurbs.refine import inserted
 
-CHORD_BINS = 40
-"""parts of the chord by whose outermost points a first profile is drawn"""
+DEGREE = 3
+"""degree of camber and thickness (the source's section 3.1)"""
+THIRD_ABSCISSA = 0.0625
+"""abscissa of the third control point of the thickness, of the chord (the source's section 4.2)"""
+SITES = np.linspace(0.0, 1.0, 201)
+"""parameters of a side where searches for nearest places start, and of the camber between which abscissae are sought"""
+NEWTON_STEPS = 2
+"""Newton steps from there: to 1e-5, squared twice, with one more in each evaluation"""
+STEP = 1e-30
+"""imaginary step of a derivative, which is exact to rounding"""
+NOISE_MAXIMUM = 3.0
+"""standard deviations of the points' noise that the largest of some hundred distances has by chance
+(design/freeform.md)"""
+MOST_GROWTHS = 8
+"""times that control points are added at most; it bounds the time."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CamberThickness(Shape):
+    """The profile of a camber (x, y) and a thickness (x, h), both over [0, 1]; its sides are exact, but no NURBS.
+
+    Its unknowns are the camber's control points, the heights of the thickness, and the logarithms of its weights. A
+    place's parameter is that of the thickness, negative on the lower side, so that the leading edge is at 0.
+    """
+
+    camber: Curve
+    thickness: Curve
+    round_end: bool = False
+    """whether the trailing edge is round as the leading edge is"""
+    fixed: bool = False
+    """whether the camber's ends stay"""
+
+    @cached_property
+    def nets(self) -> tuple[Net, Net]:
+        """Camber and thickness, whose weights are unknown; what moves of them."""
+        of, weights = self.thickness, self.thickness.weights
+        logs = np.zeros(len(of.control_points)) if weights is None else np.log(weights)
+        return (
+            Net(
+                knots=(self.camber.knots,),
+                degrees=(DEGREE,),
+                points=self.camber.control_points,
+                log_weights=np.zeros(len(self.camber.control_points)),
+                held="corners" if self.fixed else "none",
+            ),
+            Net(knots=(of.knots,), degrees=(DEGREE,), points=of.control_points, log_weights=logs, weighted=True),
+        )
+
+    @property
+    def heights(self) -> slice:
+        """Control points of the thickness whose height is free."""
+        return slice(1, -1) if self.round_end else slice(1, None)
+
+    @property
+    def unknowns(self) -> Reals:
+        """Values of the unknowns."""
+        camber, thickness = self.nets
+        return np.concatenate(
+            [camber.unknowns, thickness.points[self.heights, 1], thickness.gauge.T @ thickness.log_weights]
+        )
+
+    def changed(self, unknowns: Array) -> CamberThickness:
+        """The profile with other values of its unknowns, which may be complex."""
+        camber, net = (of.control_points.astype(unknowns.dtype) for of in (self.camber, self.thickness))
+        free = self.nets[0].free
+        moved, gauge = 2 * int(free.sum()), self.nets[1].gauge
+        camber[free] = unknowns[:moved].reshape(-1, 2)
+        net[self.heights, 1] = unknowns[moved : len(unknowns) - gauge.shape[1]]
+        net[:, 0] = abscissae_of(len(net), camber[0, 0], camber[-1, 0], round_end=self.round_end)
+        weights = np.exp(gauge @ unknowns[len(unknowns) - gauge.shape[1] :])
+        return replace(
+            self,
+            camber=replace(self.camber, control_points=camber),
+            thickness=replace(self.thickness, control_points=net, weights=weights),
+        )
+
+    def nearest(self, points: Reals, near: Reals | None = None) -> Reals:
+        """Parameters (m, 1) of the nearest places of points (m, 2): of all, or where descents from `near` end."""
+        starts = [] if near is None else [near[:, 0]]
+        if near is None:
+            starts = [sign * SITES[cKDTree(self(sign * SITES)).query(points)[1]] for sign in (1.0, -1.0)]
+        found = [descended(self._derivatives, points, start, (-1.0, 1.0), converged=LAST_STEP) for start in starts]
+        best = np.argmin([square for _, square in found], axis=0)
+        return np.stack([u for u, _ in found])[best, np.arange(len(points))][:, None]
+
+    def _derivatives(self, u: Reals) -> tuple[Reals, Reals, Reals]:
+        """The point and its first derivative; near the sides the second adds nothing to a step."""
+        place = self(u + 1j * STEP)
+        return place.real, place.imag / STEP, np.zeros_like(place.real)
+
+    def tangents(self, parameters: Reals) -> tuple[Reals, Reals, NDArray[np.bool_]]:
+        """Places (m, 2), tangents (m, 1, 2), and whether (m, 1) a place is free to move."""
+        place, tangent, _ = self._derivatives(parameters[:, 0])
+        return place, tangent[:, None], parameters**2 < 1.0
+
+    def slopes(self, parameters: Reals, directions: Reals) -> Reals:
+        """Derivatives (r, n) by the unknowns of places at held parameters (r, 1), along directions (r, 2)."""
+        u, at = parameters[:, 0], self.unknowns
+        near = self._sites(u)
+        columns = [self.changed(at + 1j * STEP * each)(u, near).imag / STEP for each in np.eye(len(at))]
+        return np.stack([np.sum(column * directions, axis=-1) for column in columns], axis=-1)
+
+    def bending(self, stiffness: float) -> tuple[Reals, Reals]:
+        """Residuals (b,) whose squares are the bending and the weights' logarithms, times its weight.
+
+        And their derivatives (b, n).
+        """
+        camber, thickness = self.nets
+        cost = np.sqrt(stiffness)
+        slopes = cost * block_diag(
+            np.kron(camber.bending_root[:, camber.free], np.eye(2)),
+            thickness.bending_root[:, self.heights],
+            np.eye(thickness.gauge.shape[1]),
+        )
+        residuals = [
+            (camber.bending_root @ camber.points).ravel(),
+            thickness.bending_root @ thickness.points[:, 1],
+            thickness.gauge.T @ thickness.log_weights,
+        ]
+        return cost * np.concatenate(residuals), slopes
+
+    @cached_property
+    def _abscissae(self) -> Reals:
+        return np.maximum.accumulate(np.real(self.camber(SITES)[:, 0]))
+
+    def _sites(self, u: Array) -> Reals:
+        """Camber parameters (n,) at parameters u (n,) of the thickness, where the abscissae are the same."""
+        abscissae = np.real(self.thickness(np.abs(np.real(u)))[:, 0])
+        found = np.interp(abscissae, self._abscissae, SITES)
+        for _ in range(NEWTON_STEPS):
+            place, slope = (np.real(each[:, 0]) for each in self.camber.derivatives(found, 1))
+            found = np.clip(found - (place - abscissae) / np.maximum(slope, 1e-9), 0.0, 1.0)
+        return found
+
+    def __call__(self, u: Array, near: Reals | None = None) -> Array:
+        """Points (n, 2) at parameters u (n,), which may be complex; camber parameters `near` (n,) are then at hand."""
+        sign = np.where(np.real(u) < 0.0, -1.0, 1.0)
+        x, h = self.thickness(sign * u).T
+        near = self._sites(u) if near is None else near
+        first, slope = self.camber.derivatives(near, 1)
+        place, tangent = self.camber.derivatives(near + (x - first[:, 0]) / slope[:, 0], 1)
+        return np.asarray(place + (sign * h / length(tangent))[:, None] * turned_left(tangent))
+
+
+def abscissae_of(count: int, low: float, high: float, *, round_end: bool) -> Array:
+    """Abscissae (count,) of the thickness's control points."""
+    last = count - 2 if round_end else count - 1
+    inner = np.linspace(THIRD_ABSCISSA, 1.0, last - 1)
+    share = np.concatenate([[0.0, 0.0], inner, [1.0] if round_end else []])
+    return np.asarray(low + share * (high - low))
 
 
 @final
@@ -48,9 +200,7 @@ class ProfileFit(FreeformFit):
         """Points (m, 2) of a side at parameters t (m,) of the thickness, leading edge at 0."""
         at = np.atleast_1d(np.asarray(t, dtype=np.float64))
         # the smallest number below zero is the leading edge of the lower side
-        return CamberThickness(camber=self.camber, thickness=self.thickness).along(
-            at if upper else -np.maximum(at, 1e-300)
-        )[0]
+        return CamberThickness(camber=self.camber, thickness=self.thickness)(at if upper else -np.maximum(at, 1e-300))
 
 
 def fit_profile(
@@ -80,138 +230,100 @@ def fit_profile(
     off along the camber's normals.
     """
     given = checked_points(points, "a profile", (2,))
-    unit = unit_of(given)
+    unit = Unit(given)
     pair, scaled = checked_ends(ends, unit), unit.scaled(given)
     options = checked_options(
         weights="fixed", power=power, robust=False, tolerance=tolerance, extent=unit.extent, progress=progress
     )
+    if trailing_edge not in ("blunt", "round"):
+        raise FitError(f"trailing edge {trailing_edge!r} is unknown: `blunt` or `round`")
+    free = isinstance(ends, str) and ends == "free"
 
     def fitted(camber: int, thickness: int) -> ProfileFit:
-        _check(given, camber, thickness, trailing_edge)
-        start, upper = _start(scaled, camber, thickness, round_end=trailing_edge == "round")
+        start = _start(scaled, camber, thickness, round_end=trailing_edge == "round")
         if pair is not None:
             moved = start.unknowns
             moved[:2], moved[2 * camber - 2 : 2 * camber] = pair
             start = start.changed(moved)
-        free = isinstance(ends, str) and ends == "free"
         # a blunt edge that stands out of its points costs nothing, so that its end is freed last
         blunt = trailing_edge == "blunt"
-        start = replace(start, fixed=blunt or not free)
+        match = placed(replace(start, fixed=blunt or not free), scaled)
+        upper = match.parameters[:, 0] >= 0.0
         counts = np.where(upper, np.sum(upper), np.sum(~upper))
-        target = Target(points=scaled, weights=0.5 * len(scaled) / counts)
-        match, inliers = matched_by_stages(start, target, options)
+        match = matched_by_stages(replace(match, weights=0.5 * len(scaled) / counts), options, STIFFNESSES[2:])
         if blunt and free:
-            match, inliers = matched_by_stages(replace(match.shape, fixed=False), target, options, warm=True)
-        parameters, figures = figures_of(match, inliers, scaled, unit.extent)
-        of = match.shape
+            match = matched_by_stages(replace(match, shape=replace(match.shape, fixed=False)), options, ())
+        of, u = match.shape, match.parameters[:, 0]
         heights = of.thickness.control_points * unit.extent + np.array([unit.centre[0], 0.0])
         return ProfileFit(
             camber=replace(of.camber, control_points=unit.restored(of.camber.control_points)),
             thickness=replace(of.thickness, control_points=heights),
-            upper=parameters[:, 0] >= 0.0,
-            t=np.abs(parameters[:, 0]),
+            upper=u >= 0.0,
+            t=np.abs(u),
             tolerance=tolerance,
-            **figures,
+            **figures_of(match, unit.extent),
         )
 
-    return fitted(camber, thickness) if tolerance is None else _within_tolerance(fitted, camber, thickness, tolerance)
-
-
-def _start(points: Reals, camber: int, thickness: int, *, round_end: bool) -> tuple[CamberThickness, NDArray[np.bool_]]:
-    """A first profile: the middle between the outermost points across the longest chord, and a mean thickness."""
-    try:
-        hull = points[ConvexHull(points).vertices]
-    except QhullError as error:
-        raise FitError(f"the {len(points)} points lie on a line: a profile has two sides") from error
-    squares = np.sum((hull[:, None] - hull) ** 2, axis=-1)
-    a, b = hull[list(np.unravel_index(np.argmax(squares), squares.shape))]
-    low, high = (a, b) if a[0] < b[0] else (b, a)
-    chord = high - low
-    size = float(length(chord))
-    along, across = chord / size, turned_left(chord / size)
-    xi, eta = (points - low) @ along / size, (points - low) @ across / size
-    bins = np.clip((xi * CHORD_BINS).astype(int), 0, CHORD_BINS - 1)
-    rows = [np.flatnonzero(bins == k) for k in range(CHORD_BINS)]
-    known = [(np.mean(xi[r]), eta[r].min(), eta[r].max()) for r in rows if len(r) >= 2]
-    at, bottom, top = np.array(known).T
-    # the bins at the ends hold only the edges
-    middle = np.polynomial.Polynomial.fit(at, 0.5 * (bottom + top), 4, domain=[0.0, 1.0], window=[0.0, 1.0])
-    half = max(0.5 * float(np.median(top - bottom)), 1e-3) * size
-    s = np.linspace(0.0, 1.0, 101)
-    line = low + s[:, None] * chord + (middle(s) * size)[:, None] * across
-    empty = Net(knots=(uniform_knots(camber, DEGREE),), degrees=(DEGREE,), points=np.zeros((camber, 2)))
-    net = empty.through(line, s[:, None], 1e-8).points
-    # a camber whose abscissa turns back has no thickness over it
-    net[:, 0] = (
-        np.linspace(line[:, 0].min(), line[:, 0].max(), camber) if (np.diff(net[:, 0]) <= 0.0).any() else net[:, 0]
+    found = fitted(camber, thickness)
+    evaluations, reason = (
+        found.iterations,
+        f"the tolerance is not reached after {MOST_GROWTHS} rounds of control points",
     )
-    abscissae = abscissae_of(thickness, net[0, 0], net[-1, 0], round_end=round_end)
-    heights = np.full(thickness, half)
-    heights[0], heights[1] = 0.0, 0.6 * half
-    heights[-1] = 0.0 if round_end else 0.3 * half
-    profile = CamberThickness(
-        camber=Curve(control_points=net, knots=uniform_knots(camber, DEGREE), degree=DEGREE),
-        thickness=Curve(
-            control_points=np.stack([abscissae, heights], axis=-1),
-            knots=uniform_knots(thickness, DEGREE),
-            degree=DEGREE,
-            weights=np.ones(thickness),
-        ),
-        round_end=round_end,
-    )
-    return profile, eta > middle(np.clip(xi, 0.0, 1.0))
+    for growth in range(1, MOST_GROWTHS + 1):
+        if tolerance is None or found.maximum <= tolerance:
+            break
+        if found.maximum <= NOISE_MAXIMUM * found.noise:
+            reason = "what is left is the noise of the points: more control points would follow it"
+            break
+        try:
+            richer = fitted(camber + growth, thickness + growth)
+        except FitError as refusal:
+            reason = str(refusal)
+            break
+        evaluations += richer.iterations
+        if richer.maximum >= found.maximum:
+            reason = "further control points bring the profile no nearer"
+            break
+        found = richer
+    notes = found.notes if found.passed or tolerance is None else (*found.notes, reason)
+    return replace(found, iterations=evaluations, notes=notes)
 
 
-def _check(points: Reals, camber: int, thickness: int, trailing_edge: str) -> None:
-    if trailing_edge not in ("blunt", "round"):
-        raise FitError(f"trailing edge {trailing_edge!r} is unknown: `blunt` or `round`")
-    least = 6 if trailing_edge == "round" else 5
+def _start(points: Reals, camber: int, thickness: int, *, round_end: bool) -> CamberThickness:
+    """A first profile: camber and thickness of the points in the frame of their longest chord."""
+    least = 6 if round_end else 5
     if camber < DEGREE + 1 or thickness < least:
         raise FitError(
             f"{camber} control points of the camber and {thickness} of the thickness were asked for: at least "
             f"{DEGREE + 1} and {least} are needed"
         )
-    unknowns = 2 * camber + 2 * thickness
-    if len(points) < unknowns:
+    if len(points) < 2 * camber + 2 * thickness:
         raise FitError(
-            f"{len(points)} points were to determine about {unknowns} unknowns of a profile: give more points"
+            f"{len(points)} points were to determine about {2 * camber + 2 * thickness} unknowns of a profile: give "
+            "more points"
         )
-
-
-ADDED_COUNTS = ((1, 0), (0, 1), (1, 1))
-"""control points of camber and thickness that are added at a time"""
-MOST_GROWTHS = 8
-"""times that control points are added at most; it bounds the time."""
-NOISE_MAXIMUM = 3.0
-"""standard deviations of the points' noise that the largest of many distances has by chance"""
-WORTHWHILE_RATIO = 0.97
-"""ratio of largest distances below which further control points are worthwhile."""
-
-
-def _within_tolerance(
-    fitted: Callable[[int, int], ProfileFit], camber: int, thickness: int, tolerance: float
-) -> ProfileFit:
-    """The fit that keeps a tolerance with few control points, or the nearest one, which says why it does not."""
-    found = fitted(camber, thickness)
-    evaluations = found.iterations
-    reason = f"the tolerance is not reached after {MOST_GROWTHS} rounds of control points"
-    for _ in range(MOST_GROWTHS):
-        if found.maximum <= tolerance:
-            break
-        if found.maximum <= NOISE_MAXIMUM * found.noise:
-            reason = "what is left is the noise of the points: more control points would follow it"
-            break
-        tried = []
-        for more in ADDED_COUNTS:
-            try:
-                tried.append((more, fitted(camber + more[0], thickness + more[1])))
-            except FitError as refusal:
-                reason = str(refusal)
-        evaluations += sum(each.iterations for _, each in tried)
-        more, nearest = min(tried, key=lambda each: each[1].maximum, default=((0, 0), found))
-        if nearest.maximum > WORTHWHILE_RATIO * found.maximum:
-            reason = reason if not tried else "further control points bring the profile no nearer"
-            break
-        camber, thickness, found = camber + more[0], thickness + more[1], nearest
-    notes = found.notes if found.maximum <= tolerance else (*found.notes, reason)
-    return replace(found, iterations=evaluations, notes=notes)
+    try:
+        direction = longest_chord(points)
+    except QhullError as error:
+        raise FitError(f"the {len(points)} points lie on a line: a profile has two sides") from error
+    plane = PlanePoints(points=points, v=np.zeros(len(points)))
+    found = slices_of(plane, lambda v: np.full_like(v, direction), np.zeros(1), 1)
+    knots = uniform_knots(camber, DEGREE)
+    line = inserted(Curve(control_points=found.camber[0], knots=uniform_knots(4, DEGREE), degree=DEGREE), knots[4:-4])
+    low, high = found.camber[0, [0, 3], 0]
+    knots, abscissae = uniform_knots(thickness, DEGREE), abscissae_of(thickness, low, high, round_end=round_end)
+    rows = basis(knots, DEGREE, SITES)
+    half = np.interp((rows @ abscissae - low) / (high - low), PLACES, found.half[0])
+    heights = np.zeros(thickness)
+    inner = slice(1, -1) if round_end else slice(1, None)
+    heights[inner] = np.linalg.lstsq(rows[:, inner], half, rcond=None)[0]
+    return CamberThickness(
+        camber=line,
+        thickness=Curve(
+            control_points=np.stack([abscissae, heights], axis=-1),
+            knots=knots,
+            degree=DEGREE,
+            weights=np.ones(thickness),
+        ),
+        round_end=round_end,
+    )
