@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from bladewright.fitting.clouds.thinning import even_subset, random_subset
+from bladewright.fitting.clouds.thinning import even_subset, isolated_points, random_subset
+from machines import built, example
 
 
 def uneven(seed, count=4000, dimension=3):
@@ -53,3 +54,24 @@ def test_what_is_spread_does_not_depend_on_the_order_nor_the_place_of_the_points
 
 def test_points_in_one_place_are_one():
     assert len(even_subset(np.ones((50, 2)), 10)) == 1
+
+
+@pytest.mark.parametrize("name", ["aachen-stator", "compressor-stator"])
+def test_points_strewn_about_rows_are_told_in_the_most_and_no_other_is(name):
+    random, sides = np.random.default_rng(0), built(example(name)).sides
+    u, v = (
+        each.ravel() for each in np.meshgrid(0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 80)), np.linspace(0, 1, 21))
+    )
+    points = np.concatenate([side(u, v) for side in sides]) + 1e-5 * random.normal(size=(2 * len(u), 3))
+    off = random.random(len(points)) < 0.03
+    points += off[:, None] * random.uniform(-0.05, 0.05, points.shape) * np.ptp(points)
+    told = isolated_points(points)
+    assert np.mean(told[off]) > 0.5
+    assert not np.any(told[~off])
+
+
+def test_no_point_of_a_cloud_that_becomes_denser_stands_alone():
+    random, sides = np.random.default_rng(1), built(example("compressor-stator")).sides
+    points = np.concatenate([side(random.random(4000) ** 2, random.random(4000)) for side in sides])
+    points = points[(points[:, 1] > np.median(points[:, 1])) | (random.random(len(points)) < 0.1)]
+    assert np.mean(isolated_points(points)) < 1e-3

@@ -19,7 +19,7 @@ from bladewright.fitting.assessment.estimates import parameter_estimates
 from bladewright.fitting.assessment.measurement import measured
 from bladewright.fitting.assessment.result import Fit, Motion
 from bladewright.fitting.clouds.cloud import checked_cloud, refuse_several_blades
-from bladewright.fitting.clouds.thinning import random_subset
+from bladewright.fitting.clouds.thinning import isolated_points, random_subset
 from bladewright.fitting.clouds.walls import walls_of
 from bladewright.fitting.design_header import DesignHeader, Unit
 from bladewright.fitting.families.blades import matched_blade
@@ -69,6 +69,8 @@ INTERRUPTED_NOTE = (
 """note on a blade that a search had found when it was interrupted"""
 INTERRUPTED_POINTS = 20_000
 """points, drawn at random, that an interrupted match is measured by: half a second, where a million take 26 s"""
+MOST_SEARCHED = 20_000
+"""points that searches see, drawn at random; the largest use 12,000, and all are measured"""
 WHOLE_BLADE_HINT = "is it one whole blade, with both sides and both edges? If so, give a start design or bounds"
 """what to check where no design was found"""
 Progress = Callable[[str], None]
@@ -161,7 +163,7 @@ def fit(
         elif walls.places:
             hidden = walls.kinds
             task = replace(task.part(np.flatnonzero(hidden == "")), walls=walls.places)
-        found, built, reason = _matched(task, kind, start, like, header, target)
+        found, built, reason = _matched(_searched_for(task), kind, start, like, header, target)
     except KeyboardInterrupt:
         nearest = task.best_so_far.built()
         if nearest is None:
@@ -237,6 +239,13 @@ def _check_flow_path(start: Design | None, like: Design | None, *, resized: bool
             "start is a unified blade in a flow path, whose numbers of control points are kept: leave tolerance and "
             "parameters out, or give a start with channel.hub and channel.shroud"
         )
+
+
+def _searched_for(task: Task) -> Task:
+    """The task without the points that stand alone, and with no more points than searches use."""
+    some = task.thinned(MOST_SEARCHED)
+    places, back = np.unique(some.points, axis=0, return_inverse=True)
+    return some.part(np.flatnonzero(~isolated_points(places)[np.ravel(back)]))
 
 
 def _matched(
