@@ -65,21 +65,22 @@ def reweighted(weights: Reals, distances: Reals, tolerance: float) -> Reals:
     return np.asarray(found * (np.sum(weights) / np.sum(found)))
 
 
-EXCHANGES, EXCHANGES_TRIED, EXCHANGE_GAIN = 8, 4, 0.99
-"""exchanges of control points between laws at most, the wider structures from which each is sought, and the ratio of
-predicted costs below which it is worthwhile."""
+EXCHANGES_TRIED = 4
+"""wider structures from which an exchange is sought, and narrower ones of each."""
 
 
 def best_of_size(model: LinearModel, most: int) -> list[Prediction]:
-    """Structures of at most so many parameters that are predicted to leave least, best first."""
+    """Structures of at most so many parameters that are predicted to leave least, best first.
+
+    Those of the elimination, and those that the best of them leads to by an exchange between two laws: a forward step
+    before a backward one (Draper and Smith 1998, section 15.4).
+    """
     pool = {each.counts: each for each in eliminated(model, most) if each.parameters <= most}
-    for _ in range(EXCHANGES if pool else 0):
+    if pool:
         best = min(pool.values(), key=lambda each: each.cost)
         gains = [((best.cost - each.cost) / (each.parameters - best.parameters), each) for each in _wider(model, best)]
         for _, more in sorted(gains, key=lambda pair: -pair[0])[:EXCHANGES_TRIED]:
             pool |= {each.counts: each for each in _reduced(model, more, most)}
-        if min(each.cost for each in pool.values()) > EXCHANGE_GAIN * best.cost:
-            break
     return sorted(pool.values(), key=lambda each: each.cost)
 
 
