@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import bladewright as bw
-from bladewright.fitting.assessment.foreign_edges import _arc, _face
+from bladewright.fitting.assessment.coverage import _arc, _face
 from machines import example
 from machines.sections import EXAMPLES
 

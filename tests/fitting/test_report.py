@@ -9,9 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bladewright.fitting.assessment.report import LISTED_OUTLIERS, report
+from bladewright.fitting.assessment.report import LISTED_OUTLIERS, report, text
 from bladewright.fitting.assessment.result import Estimate, Fit, Motion
-from bladewright.fitting.assessment.text import text
 from machines import example
 
 DESIGN = example("turbine-section")

@@ -4,11 +4,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from bladewright.fitting.assessment.coverage import least_thickness, loose_ends, uncovered_edges
+from bladewright.fitting.assessment.coverage import foreign_edges, least_thickness, loose_ends, uncovered_edges
 from bladewright.fitting.assessment.estimates import ParameterEstimates
-from bladewright.fitting.assessment.foreign_edges import foreign_edges
 from bladewright.fitting.assessment.measurement import Measurement
-from bladewright.fitting.assessment.text import with_unit
+from bladewright.fitting.assessment.report import with_unit
 from bladewright.fitting.initial_guess.blade import AXES_HINT
 from bladewright.fitting.matching.search import Match
 from bladewright.fitting.model_selection.match_target import MatchTarget

@@ -1,13 +1,19 @@
-"""What a cloud does not show of a blade: where it ends, and edges around which no point lies."""
+"""What a cloud shows of a blade's ends and edges: ends without a row of points, and edges that are bare or cut off."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import least_squares
+from scipy.special import fdtri
 
 from bladewright.fitting.free_parameters import parameters_of_curve
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS
 from bladewright.fitting.matching.footpoints import Footpoints, Side, footpoints_at
 from bladewright.fitting.matching.search import Match
 from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.curve import Curve
 
 ROW_SPREAD = 1e-4
 """spread of the points at an end, of the chord, from which they stand in no row; and of the cloud's noise
@@ -16,6 +22,25 @@ ROW_SPREAD_OF_NOISE = 2.0
 """the same, of the cloud's noise: a noisy row is a row all the same."""
 GAP_OVER_SPREAD = 2.7
 """mean distance of evenly scattered values times their number, over their deviation by the median."""
+EDGE_PARAMETERS = {"leading edge": 0.0, "trailing edge": 1.0}
+"""u of the two edges"""
+SPAN_PARTS = 5
+"""parts of the span in each of which both sides are looked at"""
+COVERED_SHARE = 0.5
+"""share of these parts that must have a point on the edge's arc; below it the edge is uncovered."""
+THICKNESS_SAMPLES = 25
+"""places along a section among which it is thickest"""
+REACH = 8.0
+"""how far from the end of an edge points are compared, in its radii: a face as wide as the edge and as much of both
+sides, which are straight so far [-]"""
+INSIDE = 0.05
+"""distance from an edge, in u, at which the sides show the direction across it [-]"""
+UNKNOWNS, ROUND_UNKNOWNS = 6, 5
+"""place, half width and turn of a face, and the slopes of both sides; place and radius of an arc, and these slopes"""
+SHARES = (0.9, 0.5, 0.1)
+"""widths from which a face and an arc are fitted, of the half height of their points"""
+CONFIDENCE = 0.999
+"""with which points are nearer to a face than to a round edge: by the ratio of their variances (Fisher 1925) [-]"""
 
 
 def loose_ends(match: Match) -> dict[str, float]:
@@ -37,16 +62,6 @@ def loose_ends(match: Match) -> dict[str, float]:
         elif wall.spread > max(ROW_SPREAD * chord, ROW_SPREAD_OF_NOISE * match.noise_estimate.noise):
             loose[name] = GAP_OVER_SPREAD * wall.spread / len(wall.places)
     return loose
-
-
-EDGE_PARAMETERS = {"leading edge": 0.0, "trailing edge": 1.0}
-"""u of the two edges"""
-SPAN_PARTS = 5
-"""parts of the span in each of which both sides are looked at"""
-COVERED_SHARE = 0.5
-"""share of these parts that must have a point on the edge's arc; below it the edge is uncovered."""
-THICKNESS_SAMPLES = 25
-"""places along a section among which it is thickest"""
 
 
 def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:
@@ -99,3 +114,93 @@ def _thickness(sides: tuple[Side, ...], v: float) -> float:
 def _places(sides: tuple[Side, ...], side: NDArray[np.intp], u: Reals, v: Reals) -> Reals:
     none = np.zeros((len(u), np.real(sides[0].control_points).shape[-1]))
     return footpoints_at(none, sides, side, u, v).points
+
+
+def foreign_edges(match: Match) -> dict[str, float]:
+    """Edges of designs with round ones where points lie on a straight face, or on two straight sides: its width [m].
+
+    A face and both sides beside it are fitted to the points about the edge, across and along the camber line there. It
+    is taken for the cloud's where it leaves clearly less of the distances than the design, and than an arc and its
+    tangents that are fitted in the same way.
+    """
+    if not match.model.rounded:
+        return {}
+    points, feet = match.problem.cloud_residuals.points[match.rows], match.state.footpoints.part(match.rows)
+    found = {}
+    for name, end in EDGE_PARAMETERS.items():
+        side, at_end = np.zeros(len(points), dtype=np.intp), np.full(len(points), end)
+        edge = footpoints_at(points, match.state.shape.sides, side, at_end, feet.v)
+        inside = np.abs(at_end - INSIDE)
+        upper, lower = (footpoints_at(points, match.state.shape.sides, side + k, inside, feet.v) for k in (0, 1))
+        across = upper.points - lower.points
+        across -= np.sum(across * edge.normals, axis=-1)[:, None] * edge.normals
+        across /= np.sqrt(np.sum(across**2, axis=-1))[:, None]
+        along, height = (np.sum(edge.miss * each, axis=-1) for each in (edge.normals, across))
+        radius = _radius(match.state.shape.sides[0], end, float(np.median(feet.v)))
+        rows = np.flatnonzero((along > -REACH * radius) & (np.abs(feet.u - end) < 0.5))
+        if len(rows) <= 2 * UNKNOWNS:
+            continue
+        width, left = _face(along[rows], height[rows])
+        own, arc = float(np.sum(feet.distances[rows] ** 2)), _arc(along[rows], height[rows])
+        free = len(rows) - UNKNOWNS
+        others = (own, len(rows)), (arc, len(rows) - ROUND_UNKNOWNS)
+        if all(other / count * free > fdtri(count, free, CONFIDENCE) * left for other, count in others):
+            found[name] = width
+    return found
+
+
+def _radius(side: Side, end: float, v: float) -> float:
+    """The radius of curvature along a section at an edge [m]."""
+    at = np.array([end])
+    if isinstance(side, Curve):
+        first, second = (np.asarray(side.derivative(at, order))[0] for order in (1, 2))
+    else:
+        first, second = (np.asarray(side.derivative(at, np.array([v]), order, 0))[0] for order in (1, 2))
+    speed = float(first @ first)
+    bend = speed * float(second @ second) - float(first @ second) ** 2
+    return speed**1.5 / max(float(np.sqrt(max(bend, 0.0))), 1e-300)
+
+
+def _face(along: Reals, height: Reals) -> tuple[float, float]:
+    """Width of the face that with two straight sides is nearest to points (n,), and the sum of squared distances."""
+
+    def distances(unknowns: Reals) -> Reals:
+        end, middle, half, turn, *slopes = unknowns
+        cosine, sine = np.cos(turn), np.sin(turn)
+        behind, off = end - cosine * along - sine * height, cosine * height - sine * along - middle
+        found = [np.hypot(behind, np.maximum(np.abs(off) - half, 0.0))]
+        for sign, slope in zip((1.0, -1.0), slopes, strict=True):
+            above = sign * off - half
+            way = np.maximum((behind + slope * above) / (1.0 + slope**2), 0.0)
+            found.append(np.hypot(behind - way, above - slope * way))
+        return np.asarray(np.min(found, axis=0))
+
+    fits = [_least(distances, along, height, (share, 0.0, 0.1, 0.1), (0.8, 1.0, 1.0)) for share in SHARES]
+    best = min(fits, key=lambda each: float(each.cost))
+    return 2.0 * float(best.x[2]), 2.0 * float(best.cost)
+
+
+def _arc(along: Reals, height: Reals) -> float:
+    """The sum of squared distances of points (n,) from the arc with two tangents that is nearest to them."""
+
+    def distances(unknowns: Reals) -> Reals:
+        end, middle, radius, *angles = unknowns
+        ahead, off = along - end + radius, height - middle
+        angle = np.where(off > 0.0, *angles)
+        behind = np.abs(off) * np.sin(angle) - ahead * np.cos(angle)
+        above = ahead * np.sin(angle) + np.abs(off) * np.cos(angle)
+        return np.asarray(np.where(behind < 0.0, np.hypot(ahead, off), above) - radius)
+
+    fits = [_least(distances, along, height, (share, 0.1, 0.1), (1.0, 1.0)) for share in SHARES]
+    return 2.0 * min(float(each.cost) for each in fits)
+
+
+def _least(
+    distances: Callable[[Reals], Reals], along: Reals, height: Reals, first: Sequence[float], most: Sequence[float]
+) -> Any:
+    """The end, middle, width and more of a shape nearest to points (n,), from a first share of their height."""
+    wide = 0.5 * float(np.ptp(height))
+    scale, high = np.array([wide] * 3 + [1.0] * len(most)), np.array([np.inf] * 3 + list(most))
+    low = np.where(np.arange(len(high)) == 2, 0.0, -high)
+    start = [float(np.max(along)), float(np.mean(height)), first[0] * wide, *first[1:]]
+    return least_squares(distances, start, bounds=(low, high), x_scale=scale)

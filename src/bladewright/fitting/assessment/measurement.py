@@ -1,17 +1,16 @@
 """The final measurement of a match: every point of the cloud against what the design builds."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bladewright.blade.native.blade import Blade
-from bladewright.fitting.assessment.deviation import REGIONS
-from bladewright.fitting.assessment.finished_faces import LONGEST_NAME, off_finished_faces
+from bladewright.fitting.assessment.finished_faces import LONGEST_NAME, meridional_places, off_finished_faces
+from bladewright.fitting.assessment.report import REGIONS
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS, WallPoints, blade_ends_of
-from bladewright.fitting.matching.footpoints import Footpoints, Side, nearest_footpoints
+from bladewright.fitting.matching.footpoints import Footpoints, nearest_footpoints
 from bladewright.fitting.matching.noise import NoiseEstimate, noise_of
 from bladewright.fitting.models.blunt_edges import edges_of, on_sides, sides_of
 from bladewright.fitting.models.model import ModelShape
@@ -21,13 +20,8 @@ from bladewright.section.section import Section
 
 EDGE_REGION = 0.03
 """extent of the edges' regions, in u; it only sorts points for the report."""
-LAST_STEP, LAST_STEP_EXACT = 1e-6, 1e-12
-"""last step of the descents, in the parameters of a patch, for all points (`LAST_STEP`) and for those that lie on the
-blade (`LAST_STEP_EXACT`), whose distances are exact to the step itself; others are exact to its square."""
 OFF_SIDES = 3.0
 """standard deviations of the distances from which a point is off the sides, and may be on another face"""
-ON_BLADE = 3e-6
-"""distance up to which a point lies on the blade, of the cloud's extent, and is projected once more."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -81,7 +75,7 @@ def measured(
     """
     sides = sides_of(built)
     exact = built.exact if isinstance(built, Blade) else None
-    footpoints = _nearest(points, sides)
+    footpoints = nearest_footpoints(points, sides)
     set_aside, off = np.full(len(points), "", dtype=f"<U{LONGEST_NAME}"), footpoints.distances
     if hidden is not None and finished is not None and np.any(hidden != ""):
         rows = np.flatnonzero(hidden != "")
@@ -139,31 +133,16 @@ def _noise_without(
     return replace(found, inliers=inliers)
 
 
-def _nearest(points: Reals, sides: Sequence[Side]) -> Footpoints:
-    """The footpoints of points (n, d), those on the blade to rounding."""
-    footpoints = nearest_footpoints(points, sides, converged=LAST_STEP)
-    exact = np.flatnonzero(footpoints.distances < ON_BLADE * float(np.ptp(points, axis=0).max()))
-    if len(exact) == 0:
-        return footpoints
-    again = nearest_footpoints(points[exact], sides, footpoints.part(exact), converged=LAST_STEP_EXACT)
-    parts = {each.name: np.array(getattr(footpoints, each.name)) for each in fields(Footpoints)}
-    for name, values in parts.items():
-        values[exact] = getattr(again, name)
-    return Footpoints(**parts)
-
-
 def _place_on_end_faces(
     points: Reals, on_end_face: Any, built: Any, deviations: Reals, places: Any, regions: Any, footpoints: Footpoints
 ) -> None:
     """Gives points on end faces the place, the region and the distance from there."""
-    exact = built.exact
-    radius = np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2) if exact.mapping.revolved else points[:, 2]
     for (name, end), face in zip(END_PARAMETERS.items(), built.design.ends, strict=True):
         rows = np.flatnonzero(on_end_face & (np.abs(footpoints.v - end) < 0.5))
         if len(rows) == 0:
             continue
-        wall = WallPoints(name=name, places=np.stack([points[rows, 0], radius[rows]], axis=-1), spread=0.0)
-        outward = wall.distances(exact) * (1.0 if end else -1.0)
+        wall = WallPoints(name=name, places=meridional_places(points[rows], built), spread=0.0)
+        outward = wall.distances(built.exact) * (1.0 if end else -1.0)
         nearer = np.abs(outward) < np.abs(deviations[rows])
         deviations[rows[nearer]] = outward[nearer]
         places[rows[nearer]] = face

@@ -12,9 +12,7 @@ from numpy.typing import NDArray
 
 from bladewright.designs import Design
 from bladewright.display import Shown
-from bladewright.fitting.assessment.deviation import Deviation, by_region, deviation_of
-from bladewright.fitting.assessment.report import report
-from bladewright.fitting.assessment.text import text
+from bladewright.fitting.assessment.report import Deviation, by_region, deviation_of, report, text
 from bladewright.frozen import FrozenRecord
 from bladewright.nurbs.basis import Reals
 

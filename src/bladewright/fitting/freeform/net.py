@@ -13,7 +13,7 @@ from scipy.linalg import block_diag, null_space
 from scipy.sparse import csr_array
 
 from bladewright.errors import FitError, GeometryError
-from bladewright.fitting.freeform.search import Shape
+from bladewright.fitting.freeform.search import STIFFNESSES, Shape
 from bladewright.numerics.quadrature import panels
 from bladewright.nurbs.basis import Reals, basis, breaks, checked_knots, uniform_knots
 from bladewright.nurbs.blossom import knot_change
@@ -23,8 +23,6 @@ from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.refine import Direction, inserted
 from bladewright.nurbs.surface import Surface
 
-FIRST_STIFFNESS = 1e-6
-"""weight of the bending of a first net: enough to hold control points that no point is near (design/freeform.md)"""
 TENSION = 0.01
 """weight of squared first derivatives, of that of squared second ones: with none, surfaces swing twice as far past
 their points, with ten times as much their corners are cut (design/freeform.md)"""
@@ -228,7 +226,7 @@ class Net(Shape):
         """The net nearest to points (m, d) at shares (m, k) of the domain, and a little stiff."""
         low, high = self.domain
         matrix = self.basis(low + (high - low) * shares)
-        normal = (matrix.T @ matrix).toarray() / len(points) + FIRST_STIFFNESS * self.bending_root.T @ self.bending_root
+        normal = (matrix.T @ matrix).toarray() / len(points) + STIFFNESSES[1] * self.bending_root.T @ self.bending_root
         # a trace of the identity holds control points that neither points nor bending determine
         normal += 1e-14 * np.eye(len(normal))
         return replace(self, points=np.linalg.solve(normal, np.asarray(matrix.T @ points) / len(points)))
