@@ -275,10 +275,14 @@ def start_beside(of):
     from bladewright.files.writing import write_design
 
     design = example(BROUGHT[of.machine])
-    values = {k: v * (1.0 + 0.03 * of.draw.normal()) for k, v in design.parameters().items() if not k.startswith("ch")}
-    path = of.directory / "start.toml"
-    write_design(design.changed(values), path)
-    return str(path)
+    path, before = of.directory / "start.toml", design.parameters()
+    while True:
+        values = {k: v * (1.0 + 0.03 * of.draw.normal()) for k, v in before.items() if not k.startswith("ch")}
+        try:
+            write_design(design.changed(values), path)
+        except DesignError:
+            continue
+        return str(path)
 
 
 def _moved(of, *, started):

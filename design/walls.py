@@ -67,15 +67,16 @@ def of_machine(name, fillet, count, noise):
 
 def main():
     """Print how many points are told."""
-    taken = 0
+    taken = tried = 0
     rows = [r for r in ROWS.values() if r.group in GROUPS and not any(word in r.name for word in OTHERS)]
     for row in rows:
         with tempfile.TemporaryDirectory() as directory:
             points = row.cloud(Path(directory)).points
-        if points.shape[1] == 3 and np.any(walls_of(points, None).kinds != ""):
+        tried += points.shape[1] == 3
+        if np.any(walls_of(points, None).kinds != ""):
             taken += 1
             print(f"points of {row.name} are taken")
-    print(f"points of {taken} clouds without walls are taken")
+    print(f"points of {taken} of {tried} clouds without walls are taken")
     print("| machine | hub points, fillet, noise | of the hub | of the fillet | of the sides |\n|---|---|---|---|---|")
     for name in MACHINES:
         for fillet, count, noise in ((0.0, 1000, 0.0), (0.0, 150, 0.0), (0.03, 1000, 1e-4), (0.03, 150, 1e-4)):
