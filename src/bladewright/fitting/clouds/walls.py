@@ -36,9 +36,9 @@ SCATTER, BENT = 2e-3, 0.2
 reach 1e-3 and 0.05, rows of points that only seem to be a sheet have 6e-3 (design/matching.md)"""
 ONE_SIDE = 0.97
 """share of the other points beside a wall that lie on one side of it"""
-WIDER = 1.5
+WIDER = 1.2
 """width of a wall along the pitch, of the largest thickness beside it: sheets of clouds without walls reach 0.91, walls
-that reach half a chord to each side begin at 2 (design/matching.md)"""
+that reach half a chord to each side begin at 1.4 (design/matching.md)"""
 FILLET_PATCH = 8
 """points of a patch of a fillet, which is small"""
 AT_WALL, ON_FILLET = 0.65, 0.5

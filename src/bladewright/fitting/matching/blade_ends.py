@@ -149,18 +149,26 @@ def blade_ends_of(
         # points of the sides beside the row would pull the end inwards
         chosen = chosen[aside <= ROW_WIDTH * max(spread, ROW_LEAST_WIDTH * float(np.ptp(places)))]
         walls[name] = WallPoints(name=name, places=places[chosen], spread=spread)
-    for each in beside:
-        wall = _nearer_wall(each, exact)
-        walls[wall.name] = wall
+    nearer = [_nearer_wall(each, exact) for each in beside]
+    for name in set(nearer):
+        own = [each for each, wall in zip(beside, nearer, strict=True) if wall == name]
+        walls[name] = _wall_beside(name, np.concatenate(own), exact)
     near = np.flatnonzero(((footpoints.v < PAST_END_BAND) | (footpoints.v > 1.0 - PAST_END_BAND)) & ~on_end_face)
     return BladeEnds(walls=walls, on_end_face=on_end_face, near=near)
 
 
-def _nearer_wall(places: Reals, exact: ExactBlade) -> WallPoints:
-    """The wall that places (m, 2) beside a blade are of, with those between its leading and trailing edge."""
-    walls = [WallPoints(name=name, places=places, spread=0.0) for name in END_PARAMETERS]
-    t, distances = min((wall.located(exact) for wall in walls), key=lambda each: float(np.median(np.abs(each[1]))))
-    name = walls[int(np.argmin([np.median(np.abs(wall.distances(exact))) for wall in walls]))].name
+def _nearer_wall(places: Reals, exact: ExactBlade) -> str:
+    """The name of the wall that most of places (m, 2) beside a blade are nearer to."""
+
+    def away(name: str) -> float:
+        return float(np.median(np.abs(WallPoints(name=name, places=places, spread=0.0).distances(exact))))
+
+    return min(END_PARAMETERS, key=away)
+
+
+def _wall_beside(name: str, places: Reals, exact: ExactBlade) -> WallPoints:
+    """The points of a wall beside a blade that are between its leading and its trailing edge."""
+    t, distances = WallPoints(name=name, places=places, spread=0.0).located(exact)
     between = np.flatnonzero((t > 0.0) & (t < 1.0))
     between = between[random_subset(len(between), MOST_WALL_POINTS)]
     aside = _off_row(t[between], distances[between], inward=1.0 if name == "hub" else -1.0)
