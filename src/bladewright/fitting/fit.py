@@ -32,8 +32,7 @@ from bladewright.fitting.initial_guess.arrangement import spans_along_y
 from bladewright.fitting.matching.search import COARSEST_TOLERANCE, Match, Task
 from bladewright.fitting.model_selection.match_target import MatchTarget
 from bladewright.fitting.registration.axes import axis_motion, found_axes
-from bladewright.fitting.registration.registration import registration
-from bladewright.fitting.registration.rigid_motion import composed
+from bladewright.fitting.registration.registration import composed, registration
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import choice
 from bladewright.section.unified import UnifiedSection

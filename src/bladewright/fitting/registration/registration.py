@@ -15,6 +15,7 @@ from itertools import permutations, product
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
+from scipy.spatial.transform import Rotation
 
 from bladewright.designs import Design
 from bladewright.errors import FitError
@@ -22,7 +23,6 @@ from bladewright.fitting.assessment.result import Motion
 from bladewright.fitting.clouds.thinning import even_subset, random_subset, without_isolated_points
 from bladewright.fitting.matching.footpoints import Side, footpoints_at, nearest_footpoints
 from bladewright.fitting.models.blunt_edges import sides_of
-from bladewright.fitting.registration.rigid_motion import FREEDOMS, GENERATORS, composed, rotation_by
 from bladewright.numerics.robust import TUKEY_WIDTH, median_deviation, tukey_weights
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.surface import Surface
@@ -50,6 +50,22 @@ of the blade's extent, above which their noise does not let them"""
 OTHER_BLADE, LEAST_SHARE = 5e-3, 0.7
 """typical distance, of the chord, above which the cloud is of another blade: as far as a match may be off where no
 tolerance is asked; and share of the points that must take part"""
+FREEDOMS = {
+    2: ("turn", "shift_x", "shift_y"),
+    3: ("turn_x", "turn_y", "turn_z", "shift_x", "shift_y", "shift_z"),
+}
+"""degrees of freedom by dimension: right-handed turns about the machine's axes, then shifts along them"""
+GENERATORS = {
+    2: np.array([[[0.0, -1.0], [1.0, 0.0]]]),
+    3: np.array(
+        [
+            [[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]],
+            [[0.0, 0.0, 1.0], [0.0, 0.0, 0.0], [-1.0, 0.0, 0.0]],
+            [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
+        ]
+    ),
+}
+"""(k, d, d) rates of change of the rotation by a turn, in d dimensions"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -273,4 +289,20 @@ def _reported(points: Reals, contacts: Contacts, motion: Motion, extent: float, 
         covariance=covariance,
         same=same,
         notes=tuple(notes),
+    )
+
+
+def rotation_by(turns: Reals) -> Reals:
+    """The rotation (d, d) by an angle (1,) in the plane, or a rotation vector (3,) in space [rad]."""
+    if len(turns) == 3:
+        return np.asarray(Rotation.from_rotvec(turns).as_matrix())
+    c, s = np.cos(turns[0]), np.sin(turns[0])
+    return np.array([[c, -s], [s, c]])
+
+
+def composed(second: Motion, first: Motion) -> Motion:
+    """The motion that does `first`, then `second`."""
+    return Motion(
+        rotation=second.rotation @ first.rotation,
+        translation=second.rotation @ first.translation + second.translation,
     )
