@@ -28,6 +28,7 @@ from bladewright.fitting.model_selection.elimination import (
     reweighted_prediction,
 )
 from bladewright.fitting.model_selection.match_target import MatchTarget
+from bladewright.fitting.model_selection.other_edges import from_other_edges
 from bladewright.fitting.model_selection.prediction import LinearModel, Prediction
 from bladewright.fitting.model_selection.reshaping import reshaped, with_feasible_edges
 from bladewright.fitting.model_selection.reweighting import confirmed_match, largest_of, nearest_to_tolerance
@@ -157,6 +158,8 @@ def _of_structure(several: Task, many: Task, found: Match, structure: Structure,
         if not tried:
             return found
         found = min(tried, key=lambda each: each.rms)
+        if several.dimension == 2 and found.maximum > NEAR * found.model.chord and has_systematic_misfit(found):
+            found = min((found, *from_other_edges(several, found, GUESS_NOISE)), key=lambda each: each.rms)
     found = searched(many, found.design)
     if has_systematic_misfit(found):
         return found
