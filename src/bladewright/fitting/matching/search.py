@@ -18,6 +18,7 @@ from bladewright.fitting.matching.blade_ends import BladeEnds, blade_ends_of
 from bladewright.fitting.matching.edge_overhang import edge_overhang_of
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.noise import NoiseEstimate, noise_of
+from bladewright.fitting.matching.outliers import ALWAYS_INLIER
 from bladewright.fitting.matching.regularisation import regularisation_of
 from bladewright.fitting.matching.residuals import CloudResiduals, MatchProblem, PlacedCloud
 from bladewright.fitting.matching.scales import scales_of
@@ -258,6 +259,8 @@ def _prepared_round(
     misfit = (
         float(np.sqrt(np.mean(footpoints.distances[noise_estimate.inliers & ~ends.on_end_face] ** 2))) / model.chord
     )
+    # of a cloud without noise the true edge is to cost nothing
+    exact = not task.allow_outliers or noise_estimate.noise < ALWAYS_INLIER * float(np.max(np.ptp(points, axis=0)))
     scales = scales_of(start, paths, model.chord, task.bounds)
     regularisation = regularisation_of(start, paths, scales.size)
     cloud_residuals = CloudResiduals(
@@ -269,7 +272,7 @@ def _prepared_round(
             points,
             shape.sides,
             noise_estimate.inliers & ~ends.on_end_face,
-            exact=not task.allow_outliers,
+            exact=exact,
             cut_edges=task.cut_edges,
         ),
         noise=misfit if noise is None else noise,
