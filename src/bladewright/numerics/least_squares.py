@@ -58,8 +58,8 @@ class ConstrainedProblem(ABC):
         """Residuals (m,) and constrained values (c,); None where the variables describe no shape."""
 
     @abstractmethod
-    def derivatives(self, z: Reals) -> tuple[Reals, Reals]:
-        """Their derivatives (m, k) and (c, k)."""
+    def derivatives(self, z: Reals) -> tuple[Reals, Reals] | None:
+        """Their derivatives (m, k) and (c, k); None where there are none, as places between those of the values fold."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -94,8 +94,9 @@ def constrained_minimum(
         return ConstrainedMinimum(z=z, converged=False, damping=damping)
     residuals, constrained = found
     penalty, growth, gain, done = 0.0, 2.0, 1.0, 1
-    while done < steps:
-        slopes, constraint_slopes = problem.derivatives(z)
+    linearised = problem.derivatives(z)
+    while done < steps and linearised is not None:
+        slopes, constraint_slopes = linearised
         matrix, rhs = _reduced(slopes, -residuals)
         scale = float(np.max(np.sum(slopes**2, axis=0), initial=1e-300))
         sizes = np.sqrt(np.sum(slopes**2, axis=0) + damping * scale)
@@ -132,11 +133,13 @@ def constrained_minimum(
             if fresh is not None:
                 after = float(fresh[0] @ fresh[0]) + penalty * float(np.sum(np.maximum(fresh[1], 0.0)))
             gain = (before - after) / predicted
-            if gain > 1e-3 and fresh is not None:
-                z, (residuals, constrained) = trial, fresh
+            ends = gain > GOOD_GAIN and max(1.0 - gain, EXPECTED_REST) * predicted < min_reduction * after
+            following = problem.derivatives(trial) if gain > 1e-3 and done < steps and not ends else None
+            if gain > 1e-3 and fresh is not None and (ends or done >= steps or following is not None):
+                z, (residuals, constrained), linearised = trial, fresh, following
                 damping *= max(1.0 / 10.0, 1.0 - (2.0 * min(gain, 1.0) - 1.0) ** 3)
                 damping, growth, moved = max(damping, 1e-16), 2.0, True
-                if gain > GOOD_GAIN and max(1.0 - gain, EXPECTED_REST) * predicted < min_reduction * after:
+                if ends:
                     return ConstrainedMinimum(z=z, converged=True, damping=damping)
                 break
             damping *= growth

@@ -52,6 +52,9 @@ waves of laws show."""
 LONGEST_NOSE = 0.6
 """Largest meridional extent, in u, of a rounded edge past the channel's edge curve: the channel's polynomials are
 continued so far, and bend away beyond."""
+LONGER_REACH = 1.5
+"""Factor of the continuation where stream lines slow down past an edge, so that noses reach past it after all: they
+would be followed beyond the panels of their series, where rounding grows [-]"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -343,6 +346,9 @@ def exact_unified_blade(
     before, after = _reaches(within)
     # the sections do not depend on how far the stream lines are continued
     survey = replace(within, lines=stream_lines(channel, mapping, SURVEY, before, after))
+    if not _covered(survey):
+        before, after = LONGER_REACH * before, LONGER_REACH * after
+        survey = replace(within, lines=stream_lines(channel, mapping, SURVEY, before, after))
     return ExactUnifiedBlade(
         design=design,
         channel=channel,
@@ -368,10 +374,21 @@ def _channels_of(
     return full, full if clearance is None else cleared(full, clearance, tip_knots), clearance
 
 
+def _abscissae(stations: UnifiedSections) -> Reals:
+    """Abscissae (m, k) of the control points of both sides."""
+    hull = concatenated([stations.plane.upper, stations.plane.lower], axis=-2)
+    return np.asarray(np.real(hull[..., 0] / hull[..., 2] if hull.shape[-1] == 3 else hull[..., 0]))
+
+
+def _covered(stations: UnifiedSections) -> bool:
+    """Whether the continued stream lines hold all control points of the sections."""
+    abscissae, ends = _abscissae(stations), np.real(stations.lines.starts)
+    return bool(np.all(abscissae >= ends[..., :1]) and np.all(abscissae <= ends[..., -1:]))
+
+
 def _reaches(stations: UnifiedSections) -> list[float]:
     """How far, in u, the rounded edges reach past the channel's edge curves: by the control points, with a margin."""
-    hull = concatenated([stations.plane.upper, stations.plane.lower], axis=-2)
-    abscissae = np.real(hull[..., 0] / hull[..., 2] if hull.shape[-1] == 3 else hull[..., 0])
+    abscissae = _abscissae(stations)
     lines, at = stations.lines, np.array([0.0, 1.0])
     densities = np.real(lines.mapping.density(lines.position(at), lines.position(at, 1)))
     before = -np.min(abscissae, axis=-1) / densities[..., 0]

@@ -122,15 +122,18 @@ class StreamLines:
         return found.reshape(*series.shape[:-3], *u.shape) + _of(starts, index)
 
     def _inverse(self, abscissa: Reals) -> Reals:
-        u = self._guess(abscissa)
+        # far outside the panels the series' rounding grows beyond their values
+        beside = 0.5 * np.diff(self.panels)
+        low, high = self.panels[0] - beside[0], self.panels[-1] + beside[-1]
+        u = np.clip(self._guess(abscissa), low, high)
         for _ in range(30):
             panel = self._panel(u)
             local = self._local(panel, u)
             with np.errstate(all="ignore"):  # where it diverges
                 miss = _clenshaw(_rows_of(self.series, panel), local) + _of(self.starts, panel) - abscissa
                 step = miss / _clenshaw(_rows_of(self.density, panel), local)
-                u = u - step
-            if np.max(np.abs(step), initial=0.0) < CONVERGED:  # real: a stopping rule
+                u, before = np.clip(u - step, low, high), u
+            if np.max(np.abs(u - before), initial=0.0) < CONVERGED:  # real: a stopping rule
                 return u
         raise DesignError(
             "channel: the meridional length along a stream line cannot be inverted, so its control points "

@@ -13,6 +13,7 @@ import numpy as np
 
 from bladewright.designs import Design, Part
 from bladewright.fitting.families.laws import lines_of
+from bladewright.fitting.free_parameters import EDGES
 from bladewright.fitting.model_selection.structure import SPANWISE
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import number_paths
@@ -22,6 +23,9 @@ SPREAD_ABOUT_START = 3.0
 """spread of a parameter about its start, in its own scale. It only holds what nothing else does."""
 CHANNEL_SPREAD = 1.0
 """the same of control points of the meridional curves, which the cloud lets slide along their curves."""
+CORNER_SPREAD = 0.25
+"""the same of the channel's corners: where no row of points shows an end of the blade, the outline does, within half a
+percent of the chord. With 0.5 a corner of the radial turbine ends 9 % of the chord outside its points."""
 MERIDIANS = ("channel.", "flow_path.", "leading_edge.", "trailing_edge.")
 """beginnings of the paths of those, and of the edge curves and walls of blades from sections."""
 BEND_SPREAD = 0.5
@@ -55,6 +59,8 @@ class Regularisation:
 def regularisation_of(start: Design, paths: Sequence[str], size: Reals) -> Regularisation:
     """The regularisation about a start, for parameters (k,) of scale `size`."""
     spread = np.where([path.startswith(MERIDIANS) for path in paths], CHANNEL_SPREAD, SPREAD_ABOUT_START)
+    corners = _corners(start)
+    spread = np.where([path.rpartition(".")[0] in corners for path in paths], CORNER_SPREAD, spread)
     rows, rhs_rows = [np.diag(1.0 / spread)], [np.zeros(len(paths))]
     values = start.parameters()
     index = {path: i for i, path in enumerate(paths)}
@@ -70,6 +76,14 @@ def regularisation_of(start: Design, paths: Sequence[str], size: Reals) -> Regul
         rows.append(row)
         rhs_rows.append(np.array([-sum(factor * values[path] for path, factor in terms) / (width * scale)]))
     return Regularisation(matrix=np.concatenate(rows), rhs=np.concatenate(rhs_rows))
+
+
+def _corners(start: Design) -> set[str]:
+    """Paths of the points in which edges and walls of a channel meet."""
+    channel = getattr(start, "channel", None)
+    if channel is None:
+        return set()
+    return {f"channel.{edge}[{at}]" for edge in EDGES for at in (0, len(getattr(channel, edge)) - 1)}
 
 
 def _second_differences(start: Design) -> Iterator[tuple[Terms, float]]:

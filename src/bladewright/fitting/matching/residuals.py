@@ -174,17 +174,22 @@ class MatchProblem(ConstrainedProblem):
             self._least, self.best = cost, np.array(z)
         return rows, margins
 
-    def derivatives(self, z: Reals) -> tuple[Reals, Reals]:
-        """Derivatives (m, k) of all residuals and (c, k) of the constrained values."""
+    def derivatives(self, z: Reals) -> tuple[Reals, Reals] | None:
+        """Derivatives (m, k) of all residuals and (c, k) of the constrained values.
+
+        None where the shape's stream lines turn back between the places at which it is looked at.
+        """
         state = self.state(z)
         if state is None:
-            raise DesignError("there is no shape to differentiate: start from a design that can be built")
-        edge_radius_margins = self.model.edge_radius_margin_rates(state.shape, self.paths)
-        margins, full = (edge_radius_margins[:, i].reshape(len(self.paths), -1).T for i in (0, 1))
-        margins = np.concatenate([margins, self.model.constraint_rates(state.shape, self.paths).T])
-        rows = np.concatenate(
-            [self.cloud_residuals.slopes(state, self.paths), self._edge_height_weight(state.shape) * full]
-        )
+            return None
+        try:
+            edge_radius_margins = self.model.edge_radius_margin_rates(state.shape, self.paths)
+            margins, full = (edge_radius_margins[:, i].reshape(len(self.paths), -1).T for i in (0, 1))
+            margins = np.concatenate([margins, self.model.constraint_rates(state.shape, self.paths).T])
+            slopes = self.cloud_residuals.slopes(state, self.paths)
+        except DesignError:
+            return None
+        rows = np.concatenate([slopes, self._edge_height_weight(state.shape) * full])
         return np.concatenate([rows * self.scales.size, self.regularisation.matrix]), margins * self.scales.size
 
     def _edge_height_weight(self, shape: ModelShape) -> float:

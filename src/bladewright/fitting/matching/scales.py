@@ -171,7 +171,7 @@ def _range(design: Design, path: str, value: float, largest: float, chord: float
         "weights": ParameterRange(0.5 * value, 1e-2 * value, 1e2 * value),
         "leading_edge_theta": ParameterRange(float(np.degrees(0.05))),
         "axial_chord": ParameterRange(0.05 * length, 1e-3 * length),
-        **dict.fromkeys(("channel", "flow_path.", "leading_edge.", "trailing_edge."), ParameterRange(0.005 * length)),
+        **dict.fromkeys(("channel", "flow_path.", "leading_edge.", "trailing_edge."), ParameterRange(0.02 * length)),
         "stacking.theta": ParameterRange(float(np.degrees(0.05))),
     }
     return next((kind for name, kind in kinds.items() if field.startswith(name)), ParameterRange(0.05 * length))
