@@ -59,7 +59,7 @@ class ConstrainedProblem(ABC):
 
     @abstractmethod
     def derivatives(self, z: Reals) -> tuple[Reals, Reals] | None:
-        """Their derivatives (m, k) and (c, k); None where there are none, as places between those of the values fold."""
+        """Their derivatives (m, k) and (c, k); None where there is no shape beside it."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

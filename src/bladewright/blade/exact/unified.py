@@ -50,11 +50,9 @@ SURVEY = np.array([0.0, 0.12, 0.25, 0.38, 0.5, 0.62, 0.75, 0.88, 1.0])
 """Span fractions of the sections on which the shape is judged: ends, middle, and uneven places between, so that
 waves of laws show."""
 LONGEST_NOSE = 0.6
-"""Largest meridional extent, in u, of a rounded edge past the channel's edge curve: the channel's polynomials are
-continued so far, and bend away beyond."""
+"""Largest extent, in u, of a rounded edge past the channel's edge curve: the channel's polynomials bend away beyond."""
 LONGER_REACH = 1.5
-"""Factor of the continuation where stream lines slow down past an edge, so that noses reach past it after all: they
-would be followed beyond the panels of their series, where rounding grows [-]"""
+"""Factor of the continuation where stream lines slow down past an edge, so that noses reach past it after all [-]"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -375,13 +373,11 @@ def _channels_of(
 
 
 def _abscissae(stations: UnifiedSections) -> Reals:
-    """Abscissae (m, k) of the control points of both sides."""
     hull = concatenated([stations.plane.upper, stations.plane.lower], axis=-2)
     return np.asarray(np.real(hull[..., 0] / hull[..., 2] if hull.shape[-1] == 3 else hull[..., 0]))
 
 
 def _covered(stations: UnifiedSections) -> bool:
-    """Whether the continued stream lines hold all control points of the sections."""
     abscissae, ends = _abscissae(stations), np.real(stations.lines.starts)
     return bool(np.all(abscissae >= ends[..., :1]) and np.all(abscissae <= ends[..., -1:]))
 

@@ -41,6 +41,8 @@ quantile, then in `ROW_SETTLING_TURNS` by least squares."""
 OUTER_QUANTILE = 0.2
 """share of the places at an end that lie outside the law that is first sought: a row is the outermost, and beside it
 lie points of the sides."""
+ROW_SPREAD = 1e-3
+"""spread of the points at an end below which they stand in a row on the wall, of the chord."""
 END_PARAMETERS = {"hub": 0.0, "shroud": 1.0}
 """v of the two ends, by the name of their wall."""
 
@@ -108,6 +110,10 @@ class BladeEnds:
     """(n,) whether a point lies on an end face, inside the blade's outline"""
     near: NDArray[np.intp]
     """indices of the points that may lie past an end of the sides"""
+
+    def in_rows(self, chord: float) -> bool:
+        """Whether rows of points show where hub and shroud are."""
+        return len(self.walls) == 2 and all(wall.spread < ROW_SPREAD * chord for wall in self.walls.values())
 
 
 def blade_ends_of(

@@ -56,10 +56,13 @@ class Regularisation:
         return self.matrix @ z - self.rhs
 
 
-def regularisation_of(start: Design, paths: Sequence[str], size: Reals) -> Regularisation:
-    """The regularisation about a start, for parameters (k,) of scale `size`."""
+def regularisation_of(start: Design, paths: Sequence[str], size: Reals, *, ends_shown: bool = True) -> Regularisation:
+    """The regularisation about a start, for parameters (k,) of scale `size`.
+
+    `ends_shown` tells whether rows of points show both ends of the blade.
+    """
     spread = np.where([path.startswith(MERIDIANS) for path in paths], CHANNEL_SPREAD, SPREAD_ABOUT_START)
-    corners = _corners(start)
+    corners = set[str]() if ends_shown else _corners(start)
     spread = np.where([path.rpartition(".")[0] in corners for path in paths], CORNER_SPREAD, spread)
     rows, rhs_rows = [np.diag(1.0 / spread)], [np.zeros(len(paths))]
     values = start.parameters()

@@ -262,7 +262,7 @@ def _prepared_round(
     # of a cloud without noise the true edge is to cost nothing
     exact = not task.allow_outliers or noise_estimate.noise < ALWAYS_INLIER * float(np.max(np.ptp(points, axis=0)))
     scales = scales_of(start, paths, model.chord, task.bounds)
-    regularisation = regularisation_of(start, paths, scales.size)
+    regularisation = regularisation_of(start, paths, scales.size, ends_shown=ends.in_rows(model.chord))
     cloud_residuals = CloudResiduals(
         points=points,
         roots=np.sqrt(task.weights * (noise_estimate.inliers & ~ends.on_end_face)),

@@ -49,8 +49,6 @@ WEAK_REGULARISATION = 0.1
 """factor of the regularisation where a match is only improved."""
 REFUSED_MARGIN = 6.0
 """factor of the margin of edge radii where a rich match that searches allow is refused when built."""
-ROW_SPREAD = 1e-3
-"""spread of the points at an end below which they stand in a row on the wall, of the chord."""
 CORNERS_HELD_NOTE = (
     "the radii of the channel's corners are read off the points at hub and shroud, held, and not counted"
 )
@@ -80,7 +78,7 @@ def selected_match(
     )
     if target.structured and target.tolerance is None:
         return _of_structure(several, many, found, like or structure_of(first), guessed=guessed), ""
-    held = target.parameters is not None and bool(corner_radii(first)) and _ends_in_rows(found)
+    held = target.parameters is not None and bool(corner_radii(first)) and found.ends.in_rows(found.model.chord)
     reason = CORNERS_HELD_NOTE if held else ""
     if held:
         several, many = _with_corners_held(several), _with_corners_held(many)
@@ -382,12 +380,6 @@ def _refused(match: Match) -> bool:
 def _open_limit(rich: Match) -> float:
     """The largest distance [m] of a match of which nothing is asked."""
     return (EXACT if rich.maximum <= EXACT * rich.model.chord else NEAR_EVERYWHERE) * rich.model.chord
-
-
-def _ends_in_rows(match: Match) -> bool:
-    """Whether rows of points show where hub and shroud are."""
-    walls = match.ends.walls
-    return len(walls) == 2 and all(wall.spread < ROW_SPREAD * match.model.chord for wall in walls.values())
 
 
 def _with_corners_held(task: Task) -> Task:
