@@ -4,7 +4,7 @@ A round's regularisation is as strong as the noise is large, so that a search fr
 search in exact data ends free of it. Knots, outliers and what lies at the ends are found anew for every round.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -123,6 +123,11 @@ class Task:
     def thinned(self, most: int) -> "Task":
         """The same task with at most so many of its points, drawn at random but always the same."""
         return self.part(random_subset(len(self.points), most))
+
+    def holding(self, held: Collection[str]) -> "Task":
+        """The same task with some parameters held."""
+        names = frozenset(held)
+        return replace(self, free=lambda design: tuple(path for path in self.free(design) if path not in names))
 
     def part(self, rows: NDArray[np.intp]) -> "Task":
         """The same task with some of the points (m,)."""

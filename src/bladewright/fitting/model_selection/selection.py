@@ -132,12 +132,8 @@ def determined(task: Task, match: Match) -> tuple[Match, str]:
         if number and not more:
             break
         held += more
-        match = _searched_further(replace(task, free=partial(_free_but, task, tuple(held))), match)
+        match = _searched_further(task.holding(held), match)
     return match, "; ".join(filter(None, (note, HELD_NOTE.format(", ".join(held)) if held else "")))
-
-
-def _free_but(task: Task, held: tuple[str, ...], design: Design) -> tuple[str, ...]:
-    return tuple(path for path in task.free(design) if path not in held)
 
 
 def _of_structure(several: Task, many: Task, found: Match, structure: Structure, *, guessed: bool) -> Match:

@@ -4,13 +4,9 @@ A round edge of unknown radius and an end of the blade further in make up for ea
 leave the tip of a wedge short by several radii.
 """
 
-from dataclasses import replace
-from functools import partial
-
 import numpy as np
 from scipy.special import chdtri
 
-from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.matching.footpoints import Side
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
@@ -40,7 +36,7 @@ def with_sharp_edges(task: Task, match: Match) -> tuple[Task, Match, str]:
     for name, (radius, ends) in EDGES.items() if task.dimension == 2 else ():
         if radius not in match.problem.paths or not all(_pointed(side, ends) for side in match.state.shape.sides):
             continue
-        held = replace(task, free=partial(_free_but, task, radius))
+        held = task.holding((radius,))
         try:
             match = searched(task, match.design, noise=match.rms, rounds=ROUNDS, min_reduction=ROUGH_REDUCTION)
             found = searched(
@@ -58,10 +54,6 @@ def with_sharp_edges(task: Task, match: Match) -> tuple[Task, Match, str]:
         if count * np.log(after / before) < chdtri(1, SHARPER_BY_CHANCE):
             task, match, sharp = held, found, [*sharp, name]
     return task, match, SHARP_NOTE.format(" and the ".join(sharp)) if sharp else ""
-
-
-def _free_but(task: Task, held: str, design: Design) -> tuple[str, ...]:
-    return tuple(path for path in task.free(design) if path != held)
 
 
 def _pointed(side: Side, ends: slice) -> bool:
