@@ -132,8 +132,8 @@ class StreamLines:
             with np.errstate(all="ignore"):  # where it diverges
                 miss = _clenshaw(_rows_of(self.series, panel), local) + _of(self.starts, panel) - abscissa
                 step = miss / _clenshaw(_rows_of(self.density, panel), local)
-                u, before = np.clip(u - step, low, high), u
-            if np.max(np.abs(u - before), initial=0.0) < CONVERGED:  # real: a stopping rule
+                u = np.clip(u - step, low, high)
+            if np.max(np.abs(step), initial=0.0) < CONVERGED:  # real: a stopping rule
                 return u
         raise DesignError(
             "channel: the meridional length along a stream line cannot be inverted, so its control points "
