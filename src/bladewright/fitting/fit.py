@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.blade.native.extrema import extrema_of
@@ -19,7 +19,7 @@ from bladewright.fitting.assessment.estimates import parameter_estimates
 from bladewright.fitting.assessment.measurement import measured
 from bladewright.fitting.assessment.result import Fit, Motion
 from bladewright.fitting.clouds.cloud import checked_cloud, refuse_several_blades
-from bladewright.fitting.clouds.thinning import isolated_points, random_subset
+from bladewright.fitting.clouds.thinning import isolated_points
 from bladewright.fitting.clouds.walls import walls_of
 from bladewright.fitting.design_header import DesignHeader, Unit
 from bladewright.fitting.families.blades import matched_blade
@@ -31,6 +31,7 @@ from bladewright.fitting.free_parameters import FreeParameters, free_parameters_
 from bladewright.fitting.initial_guess.arrangement import spans_along_y
 from bladewright.fitting.matching.search import COARSEST_TOLERANCE, Match, Task
 from bladewright.fitting.model_selection.match_target import MatchTarget
+from bladewright.fitting.placing import Matched, PlacedTask, nearest_of, realigned, shown_of
 from bladewright.fitting.registration.axes import axis_motion, found_axes
 from bladewright.fitting.registration.registration import composed, registration
 from bladewright.nurbs.basis import Reals
@@ -45,6 +46,13 @@ def _aligned(points: Reals, start: Design | None, header: DesignHeader) -> tuple
         return registered.motion, header, registered.notes
     motion, notes = found_axes(points, arrangement=header.arrangement)
     return motion, replace(header, arrangement="linear"), notes
+
+
+def _upright(points: Reals, motion: Motion | None) -> tuple[Motion | None, tuple[str, ...]]:
+    """The motion after which the span of a linear cascade lies along z, and notes."""
+    if not spans_along_y(points if motion is None else motion(points)):
+        return motion, ()
+    return UPRIGHT if motion is None else composed(UPRIGHT, motion), (UPRIGHT_NOTE,)
 
 
 UNIFIED_NAMES = ("unified", "unified-section")
@@ -126,58 +134,58 @@ def fit(
     header = DesignHeader(
         name=name, length_unit=length_unit, pitch=pitch, arrangement=arrangement, blade_count=blade_count
     )
-    motion = None
-    if axis is not None:
-        if align:
-            raise FitError(
-                "axis and align are both given: axis says where the machine's axis is, align finds it; leave one out"
-            )
-        motion = axis_motion(axis, points.shape[1])
-    elif align:
+    if axis is not None and align:
+        raise FitError(
+            "axis and align are both given: axis says where the machine's axis is, align finds it; leave one out"
+        )
+    given = start is not None or like is not None
+    motion, more = None if axis is None else axis_motion(axis, points.shape[1]), tuple[str, ...]()
+    if align:
         tell("axes")
         motion, header, more = _aligned(points, start, header)
-        notes = (*notes, *more)
-    points = points if motion is None else motion(points)
-    given = start is not None or like is not None
-    if arrangement == "linear" and points.shape[1] == 3 and not (align or given) and spans_along_y(points):
-        motion = UPRIGHT if motion is None else composed(UPRIGHT, motion)
-        points, notes = UPRIGHT(points), (*notes, UPRIGHT_NOTE)
-    walls = walls_of(points, header.arrangement or getattr(start or like, "arrangement", None))
-    refuse_several_blades(points[~walls.on_curve])
-    free_parameters = free_parameters_of(free, fixed, started=start is not None)
-    task = every = Task(
-        points=points,
-        weights=_weights(weights, len(points)),
-        free=free_parameters,
-        bounds=dict(bounds or {}),
-        progress=tell,
-        precision=None if weights is None else _weights(weights, len(points)),
-    )
+    elif arrangement == "linear" and points.shape[1] == 3 and not given:
+        motion, more = _upright(points, motion)
     target = MatchTarget(tolerance=tolerance, parameters=parameters, structured=parameters is None and given)
-    hidden = None
+    free_parameters = free_parameters_of(free, fixed, started=start is not None)
+
+    def place(motion: Motion | None, start: Design | None, notes: tuple[str, ...]) -> PlacedTask:
+        every = Task(
+            points=points if motion is None else motion(points),
+            weights=_weights(weights, len(points)),
+            free=free_parameters,
+            bounds=dict(bounds or {}),
+            progress=tell,
+            precision=None if weights is None else _weights(weights, len(points)),
+        )
+        walls = walls_of(every.points, header.arrangement or getattr(start or like, "arrangement", None))
+        refuse_several_blades(every.points[~walls.on_curve])
+        shown, hidden = shown_of(every, start, finishing, free_parameters, walls)
+        return PlacedTask(motion=motion, notes=notes, start=start, every=every, shown=shown, hidden=hidden)
+
+    def matched(here: PlacedTask) -> Matched:
+        return _matched(_searched_for(here.shown), kind, here.start, like, header, target)
+
+    turns = list[PlacedTask]()
     try:
-        if finishing is not None and start is not None:
-            hidden = finishing.hides(points, start)
-            task = finishing.shown(task, free_parameters, hidden)
-        elif walls.places:
-            hidden = walls.kinds
-            task = replace(task.part(np.flatnonzero(hidden == "")), walls=walls.places)
-        found, built, reason = _matched(_searched_for(task), kind, start, like, header, target)
+        turns.append(place(motion, start, more))
+        found, built, reason = matched(turns[0])
+        if align and start is not None:
+            found, built, reason = realigned(turns, (found, built, reason), place, matched)
+        here = turns[-1]
     except KeyboardInterrupt:
-        nearest = task.best_so_far.built()
+        nearest = nearest_of(turns, INTERRUPTED_POINTS)
         if nearest is None:
             raise
-        found, built, reason = *nearest, INTERRUPTED_NOTE if points.shape[1] == 3 else ""
-        if len(points) > INTERRUPTED_POINTS:
+        here, found, built = nearest
+        reason = INTERRUPTED_NOTE if points.shape[1] == 3 else ""
+        if len(here.every.points) < len(points):
             notes = (*notes, f"measured by {INTERRUPTED_POINTS} of {len(points)} points, drawn at random")
-            rows = random_subset(len(points), INTERRUPTED_POINTS)
-            every, hidden = every.part(rows), None if hidden is None else hidden[rows]
     except DesignError as error:
         raise FitError(f"no design of the family was found near the points ({error}): {WHOLE_BLADE_HINT}") from error
     if not given and header.arrangement is None and getattr(found.design, "arrangement", "") == "linear":
         notes = (*notes, CASCADE_NOTE)
-    notes = (*notes, *([reason] if reason else []))
-    return _reported(found, built, every, target, notes, motion, finishing, hidden)
+    notes = (*notes, *here.notes, *([reason] if reason else []))
+    return _reported(found, built, here, target, notes, finishing)
 
 
 def named_family(family: str, dimension: int, given: Design | None = None) -> FitFamily | None:
@@ -289,13 +297,12 @@ def _weights(weights: ArrayLike | None, count: int) -> Reals:
 def _reported(
     match: Match,
     plain: Any,
-    task: Task,
+    here: PlacedTask,
     target: MatchTarget,
     notes: tuple[str, ...],
-    motion: Motion | None,
     finishing: Finishing | None,
-    hidden: NDArray[np.str_] | None,
 ) -> Fit:
+    task = here.every
     task.progress("measuring")
     design, built, failures = match.design, plain, list[str]()
     if finishing is not None:
@@ -304,7 +311,7 @@ def _reported(
             built, design = finished.build(), finished
         except DesignError as error:
             failures.append(f"what is found cannot be cut or filleted as is given, and is left without: {error}")
-    measurement = measured(task.points, plain, task.precision, hidden=hidden, finished=built)
+    measurement = measured(task.points, plain, task.precision, hidden=here.hidden, finished=built)
     statistics = parameter_estimates(match)
     return Fit(
         design=design,
@@ -327,7 +334,7 @@ def _reported(
         failures=(*failures_of(measurement, statistics, match, target), *failures),
         notes=notes_of(notes, measurement, statistics, match, target),
         evaluations=match.evaluations,
-        motion=motion,
+        motion=here.motion,
         interrupted=match.interrupted,
     )
 

@@ -1,7 +1,7 @@
 """The ends of a blade as its cloud shows them: points at hub and shroud, and points on the end faces."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,6 +57,8 @@ class WallPoints:
     """(m, 2) the points in (x, r) [m]"""
     spread: float
     """standard deviation of their distances from one curve: small where the cloud has a row there [m]"""
+    rows: NDArray[np.intp] = field(default_factory=lambda: np.empty(0, dtype=np.intp))
+    """(m,) which points of the cloud they are; none of a wall beside the blade"""
 
     def misses(self, exact: ExactBlade) -> tuple[Reals, Reals, Reals]:
         """Nearest parameters, unit normals and misses (m,), (m, 2), (m, 2) on the channel's curve, continued."""
@@ -83,6 +85,18 @@ class WallPoints:
         """Nearest parameters and signed distances (m,) from the curve [m]."""
         t, normal, miss = self.misses(exact)
         return t, np.asarray(np.sum(normal * miss, axis=-1))
+
+    def motion_rates(self, exact: ExactBlade, points: Reals, rates: Reals) -> Reals:
+        """Rates (m, 2, k) of the places where points (n, 3) of the cloud move at rates (n, 3, k); 0 of walls beside."""
+        if len(self.rows) == 0:
+            return np.zeros((len(self.places), 2, rates.shape[2]))
+        radial = (
+            points[self.rows] * [0.0, 1.0, 1.0]
+            if exact.mapping.revolved
+            else np.tile([0.0, 0.0, 1.0], (len(self.rows), 1))
+        )
+        radial = radial / np.sqrt(np.sum(radial**2, axis=1))[:, None]
+        return np.stack([rates[self.rows, 0], np.einsum("md,mdk->mk", radial, rates[self.rows])], axis=1)
 
     def rates(self, shape: ModelShape, t: Reals, paths: Sequence[str]) -> Reals:
         """Derivatives (m, k, 2) of the places on the curve at held parameters."""
@@ -154,7 +168,7 @@ def blade_ends_of(
         spread = median_deviation(aside)
         # points of the sides beside the row would pull the end inwards
         chosen = chosen[aside <= ROW_WIDTH * max(spread, ROW_LEAST_WIDTH * float(np.ptp(places)))]
-        walls[name] = WallPoints(name=name, places=places[chosen], spread=spread)
+        walls[name] = WallPoints(name=name, places=places[chosen], spread=spread, rows=chosen)
     nearer = [_nearer_wall(each, exact) for each in beside]
     for name in set(nearer):
         own = [each for each, wall in zip(beside, nearer, strict=True) if wall == name]

@@ -72,6 +72,18 @@ class CloudResiduals:
                 blocks.append(-self._of_wall(wall) * np.einsum("nkd,nd->nk", moving, normal))
         return np.concatenate([*blocks, edges]) / chord
 
+    def motion_slopes(self, state: PlacedCloud, rates: Reals) -> Reals:
+        """Derivatives (m, k) by the motion of the cloud, whose points move at `rates` (n, d, k)."""
+        footpoints, near = state.footpoints, self.ends.near
+        directions = self.roots[:, None] * footpoints.normals, (self.roots[:, None] * footpoints.beyond)[near]
+        blocks = [np.einsum("nd,ndk->nk", *each) for each in zip(directions, (rates, rates[near]), strict=True)]
+        exact = state.shape.exact
+        if exact is not None:
+            for wall in self.ends.walls.values():
+                across = self._of_wall(wall) * wall.misses(exact)[1]
+                blocks.append(np.einsum("nd,ndk->nk", across, wall.motion_rates(exact, self.points, rates)))
+        return np.concatenate(blocks) / self.model.chord
+
     def places(self, state: PlacedCloud) -> tuple[Footpoints, Reals]:
         """The footpoints whose motion changes residuals, and the directions (n, d) that count.
 

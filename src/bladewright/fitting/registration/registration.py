@@ -50,6 +50,8 @@ of the blade's extent, above which their noise does not let them"""
 OTHER_BLADE, LEAST_SHARE = 5e-3, 0.7
 """typical distance, of the chord, above which the cloud is of another blade: as far as a match may be off where no
 tolerance is asked; and share of the points that must take part"""
+OTHER_BLADE_NOTE = "the cloud does not lie on the design's blade"
+"""what a note begins with where the cloud is of another blade"""
 FREEDOMS = {
     2: ("turn", "shift_x", "shift_y"),
     3: ("turn_x", "turn_y", "turn_z", "shift_x", "shift_y", "shift_z"),
@@ -229,10 +231,8 @@ def _weights(contact: Contact, width: float) -> Reals:
 
 def _equations(moved: Reals, contact: Contact, weights: Reals, pivot: Reals) -> tuple[Reals, Reals]:
     """Weighted rows (m, k) of what turns about a pivot and shifts do to the distances, and right sides (m,)."""
-    arms = (moved - pivot)[contact.rows]
-    turns = np.einsum("md,kde,me->mk", contact.directions, GENERATORS[moved.shape[1]], arms)
     root = np.sqrt(weights[contact.rows])
-    rows = np.concatenate([turns, contact.directions], axis=1) * root[:, None]
+    rows = np.einsum("md,mdk->mk", contact.directions, motion_rates(moved, pivot)[contact.rows]) * root[:, None]
     return rows, -np.sum(contact.directions * contact.miss[contact.rows], axis=1) * root
 
 
@@ -241,15 +241,27 @@ def _step(moved: Reals, contact: Contact, width: float, extent: float) -> Motion
     weights = _weights(contact, width)
     pivot = np.mean(moved, axis=0)
     rows, right = _equations(moved, contact, weights, pivot)
-    scale = _scale(moved.shape[1], extent)
+    scale = motion_scale(moved.shape[1], extent)
     change = scale * np.linalg.lstsq(rows * scale, right, rcond=WEAKEST_FREEDOM)[0]
-    turns = change[: len(GENERATORS[moved.shape[1]])]
+    return motion_by(change, pivot)
+
+
+def motion_rates(points: Reals, pivot: Reals) -> Reals:
+    """Rates (n, d, k) of points (n, d) by turns about a pivot and shifts."""
+    dimension = points.shape[1]
+    turns = np.einsum("kde,ne->ndk", GENERATORS[dimension], points - pivot)
+    return np.concatenate([turns, np.broadcast_to(np.eye(dimension), (len(points), dimension, dimension))], axis=2)
+
+
+def motion_by(change: Reals, pivot: Reals) -> Motion:
+    """The motion by turns about a pivot (d,), of no more than `LONGEST_TURN`, and shifts (k,)."""
+    turns = change[: len(GENERATORS[len(pivot)])]
     largest = float(np.sqrt(np.sum(turns**2)))
     rotation = rotation_by(turns * min(1.0, LONGEST_TURN / max(largest, LAST_STEP)))
     return Motion(rotation=rotation, translation=pivot - rotation @ pivot + change[len(turns) :])
 
 
-def _scale(dimension: int, extent: float) -> Reals:
+def motion_scale(dimension: int, extent: float) -> Reals:
     """Scales (k,) of the degrees of freedom by which all are lengths."""
     count = len(GENERATORS[dimension])
     return np.concatenate([np.full(count, 1.0 / extent), np.ones(dimension)])
@@ -261,7 +273,7 @@ def _reported(points: Reals, contacts: Contacts, motion: Motion, extent: float, 
     contact = contacts(moved)
     weights = _weights(contact, LEAST_WIDTH * extent)
     distances, taking = np.sqrt(np.sum(contact.miss**2, axis=1)), weights > 0.0
-    scale = _scale(dimension, extent)
+    scale = motion_scale(dimension, extent)
     rows, right = _equations(moved, contact, weights, np.mean(moved, axis=0))
     variance = float(np.sum(right**2)) / max(1, int(np.count_nonzero(right)) - rows.shape[1])
     _, values, across = np.linalg.svd(rows * scale, full_matrices=False)
@@ -277,7 +289,7 @@ def _reported(points: Reals, contacts: Contacts, motion: Motion, extent: float, 
         notes.append(f"the points do not determine {names} of the motion: they stay where the search ended")
     if not same:
         notes.append(
-            f"the cloud does not lie on the design's blade: {1.0 - share:.0%} of its points are away from it, the "
+            f"{OTHER_BLADE_NOTE}: {1.0 - share:.0%} of its points are away from it, the "
             f"others miss it by {typical:.3g} m, {typical / chord:.2%} of its chord; it is another blade, a mirrored "
             "one, or in another unit"
         )

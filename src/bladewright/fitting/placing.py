@@ -1,0 +1,144 @@
+"""A cloud in the machine's axes, with what a match there needs, and the motion there found anew from a match.
+
+A start that is off the true shape is laid on the cloud with a tilt that no parameter of a blade around an axis takes
+away, and that a registration onto the blade found takes away but slowly, as the shape has followed it. So the motion
+takes steps of Gauss and Newton on the residuals that no change of the shape takes away (variable projection: Golub and
+Pereyra 1973, Kaufman 1975), and a match follows each.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bladewright.designs import Design
+from bladewright.errors import DesignError, FitError
+from bladewright.fitting.assessment.result import Motion
+from bladewright.fitting.clouds.thinning import random_subset
+from bladewright.fitting.clouds.walls import Walls
+from bladewright.fitting.finishing import Finishing
+from bladewright.fitting.free_parameters import FreeParameters
+from bladewright.fitting.matching.search import Match, Task, has_systematic_misfit
+from bladewright.fitting.registration.registration import (
+    OTHER_BLADE_NOTE,
+    WEAKEST_FREEDOM,
+    composed,
+    motion_by,
+    motion_rates,
+    motion_scale,
+)
+
+MOST_REALIGNMENTS = 4
+"""realignments at most: a match follows each, and they bound the time to five matches"""
+GAIN = 0.9
+"""ratio of the misfits after and before a realignment above which it is not worth a match"""
+LONGEST_STEP = 0.2
+"""longest step of the motion, of the cloud's extent, within which residuals and shape are nearly linear: some 10 deg"""
+ON_BOUND, WEAKEST_SLOPE = 1e-9, 1e-10
+"""distance from a bound, of a parameter's scale, within which it is held, and singular value of the slopes, of the
+largest, below which it is rounding"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PlacedTask:
+    """What is sought in the machine's axes."""
+
+    motion: Motion | None
+    """that brought the cloud there"""
+    notes: tuple[str, ...]
+    """on the motion, each a sentence"""
+    start: Design | None
+    every: Task
+    """with all points"""
+    shown: Task
+    """with those that may lie on the sides"""
+    hidden: NDArray[np.str_] | None
+    """(n,) what the others may lie on, empty for those on the sides"""
+
+
+Matched = tuple[Match, Any, str]
+"""a match, what its design builds, and why it ends where no target is met"""
+
+
+def shown_of(
+    every: Task, start: Design | None, finishing: Finishing | None, free: FreeParameters, walls: Walls
+) -> tuple[Task, NDArray[np.str_] | None]:
+    """The task without what fillets, cuts and walls hide, and what these are."""
+    if finishing is not None and start is not None:
+        hidden = finishing.hides(every.points, start)
+        return finishing.shown(every, free, hidden), hidden
+    if walls.places:
+        return replace(every.part(np.flatnonzero(walls.kinds == "")), walls=walls.places), walls.kinds
+    return every, None
+
+
+def realigned(
+    turns: list[PlacedTask],
+    found: Matched,
+    place: Callable[[Motion, Design, tuple[str, ...]], PlacedTask],
+    match: Callable[[PlacedTask], Matched],
+) -> Matched:
+    """The nearest of matches that take turns with steps of the motion.
+
+    They go on while deviations go on from point to point, and fall. `turns` holds the tasks so far, and its last is
+    that of the match handed back.
+    """
+    for _ in range(MOST_REALIGNMENTS):
+        here, before = turns[-1], found[0]
+        step, gain = _step_beside(before) if has_systematic_misfit(before) else (None, 1.0)
+        if here.motion is None or step is None or gain > GAIN:
+            break
+        here.every.progress("axes")
+        notes = tuple(each for each in here.notes if not each.startswith(OTHER_BLADE_NOTE))
+        try:
+            there = place(composed(step, here.motion), before.design, notes)
+            turns.append(there)
+            nearer = match(there)
+        except (DesignError, FitError):
+            nearer = found
+        if nearer[0].mean_distance >= before.mean_distance:
+            del turns[turns.index(here) + 1 :]
+            break
+        found = nearer
+    return found
+
+
+def _step_beside(found: Match) -> tuple[Motion | None, float]:
+    """The motion's step while the shape follows, and the ratio by which residuals fall; None where there is no slope.
+
+    Parameters on a bound are held.
+    """
+    problem, cloud = found.problem, found.problem.cloud_residuals
+    z, (low, high) = problem.vector(found.design), problem.bounds
+    values, derivatives = problem.values(z), problem.derivatives(z)
+    if values is None or derivatives is None:
+        return None, 1.0
+    slopes = derivatives[0][:, (z - low > ON_BOUND) & (high - z > ON_BOUND)]
+    pivot, size = np.mean(cloud.points, axis=0), float(np.max(np.ptp(cloud.points, axis=0)))
+    scale = motion_scale(cloud.points.shape[1], size)
+    moving = np.zeros((len(values[0]), len(scale)))
+    rates = cloud.motion_slopes(found.state, motion_rates(cloud.points, pivot))
+    moving[: len(rates)] = rates * scale
+    shape, weight, _ = np.linalg.svd(slopes, full_matrices=False)
+    shape = shape[:, weight > WEAKEST_SLOPE * np.max(weight, initial=0.0)]
+    rows, left = (each - shape @ (shape.T @ each) for each in (moving, values[0]))
+    across, weight, turned = np.linalg.svd(rows, full_matrices=False)
+    parts = -(across.T @ left) / np.maximum(weight, WEAKEST_FREEDOM * weight[0])
+    # what the shape takes away least comes first: the rest may need a step that is no small one
+    near = (np.sqrt(np.cumsum(parts**2)) < LONGEST_STEP * size) & (weight > WEAKEST_FREEDOM * weight[0])
+    change = turned.T @ np.where(near, parts, 0.0)
+    after = left + rows @ change
+    return motion_by(scale * change, pivot), float(np.sqrt(after @ after / (values[0] @ values[0])))
+
+
+def nearest_of(turns: list[PlacedTask], most: int) -> tuple[PlacedTask, Match, Any] | None:
+    """The last task whose search has found a design, with `most` points to measure, the match, and what it builds."""
+    for here in reversed(turns):
+        nearest = here.shown.best_so_far.built()
+        if nearest is not None:
+            rows = random_subset(len(here.every.points), most)
+            hidden = None if here.hidden is None else here.hidden[rows]
+            return replace(here, every=here.every.part(rows), hidden=hidden), *nearest
+    return None

@@ -1,0 +1,93 @@
+"""Matches of moved clouds take away the motion that a start off the shape has left."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bladewright.fitting import placing
+from bladewright.fitting.assessment.result import Motion
+from bladewright.fitting.fit import fit
+from bladewright.fitting.free_parameters import FreeParameters
+from bladewright.fitting.matching.footpoints import nearest_footpoints
+from bladewright.fitting.matching.residuals import PlacedCloud
+from bladewright.fitting.matching.search import Task, evaluated
+from bladewright.fitting.registration.registration import motion_by, motion_rates
+from machines import COARSE, built, example
+
+TRUTH = example("turbine-section")
+PLACE = ("leading_edge_x", "leading_edge_y", "stagger")
+"""what moves a section"""
+AWAY = Motion(rotation=np.array([[-0.6, -0.8], [0.8, -0.6]]), translation=np.array([0.3, -0.1]))
+
+
+def moved_cloud():
+    return AWAY(np.concatenate([curve(np.linspace(0.0, 1.0, 150)) for curve in built(TRUTH).curves.values()]))
+
+
+def start_beside():
+    """A section with other angles, 6 % thicker on one side."""
+    thickness = {f"thickness_upper[{i}]": 1.06 * each for i, each in enumerate(TRUTH.thickness_upper)}
+    return TRUTH.changed(
+        {"metal_angle_in": 1.05 * TRUTH.metal_angle_in + 2.0, "metal_angle_out": 0.97 * TRUTH.metal_angle_out}
+        | thickness
+    )
+
+
+def test_a_section_that_is_held_in_its_place_is_found_with_the_motion_there(monkeypatch):
+    points, chord = moved_cloud(), float(built(TRUTH).chord)
+    found = fit(points, start_beside(), align=True, fixed=PLACE)
+    assert found.passed
+    assert found.maximum < 1e-4 * chord
+    assert found.motion(points) == pytest.approx(found.cloud, abs=1e-15)
+    # what one registration leaves
+    monkeypatch.setattr(placing, "MOST_REALIGNMENTS", 0)
+    assert fit(points, start_beside(), align=True, fixed=PLACE).maximum > 1e-3 * chord
+
+
+def test_a_match_that_is_interrupted_after_a_realignment_hands_back_the_motion_of_its_design(monkeypatch):
+    plain, steps = placing.motion_by, []
+
+    def interrupting(*given):
+        steps.append(1)
+        if len(steps) == 2:
+            raise KeyboardInterrupt
+        return plain(*given)
+
+    monkeypatch.setattr(placing, "motion_by", interrupting)
+    points = moved_cloud()
+    found = fit(points, start_beside(), align=True, fixed=PLACE)
+    assert found.interrupted
+    assert found.motion(points) == pytest.approx(found.cloud, abs=1e-15)
+    assert found.maximum < 5e-4 * float(found.built.chord)
+
+
+def test_residuals_change_with_the_motion_as_differences_say():
+    design, random = example("compressor-stator").changed("tolerance", COARSE), np.random.default_rng(0)
+    v = np.repeat([0.0, 0.0, 0.3, 0.6, 1.0, 1.0], 12)
+    points = np.concatenate([side(random.random(len(v)), v) for side in built(design).sides])
+    points = points + 1e-5 * random.normal(size=points.shape)
+    task = Task(points=points, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
+    match = evaluated(task, design, noise=1e-4)
+    cloud, shape, pivot = match.problem.cloud_residuals, match.state.shape, points.mean(axis=0)
+    assert len(cloud.ends.walls) == 2
+    slopes = cloud.motion_slopes(match.state, motion_rates(points, pivot))
+
+    def residuals(change):
+        there = motion_by(change, pivot)(points)
+        radius = np.hypot(there[:, 1], there[:, 2])
+        walls = {
+            name: replace(wall, places=np.stack([there[:, 0], radius], axis=-1)[wall.rows])
+            for name, wall in cloud.ends.walls.items()
+        }
+        at = PlacedCloud(shape=shape, footpoints=nearest_footpoints(there, shape.sides))
+        return replace(cloud, points=there, ends=replace(cloud.ends, walls=walls)).residuals(at)
+
+    # past an end the normal turns with the point, which steps of Gauss and Newton leave out
+    compared = np.ones(len(slopes), dtype=bool)
+    compared[: len(points)] = np.all(match.state.footpoints.beyond == 0.0, axis=1)
+    for k, size in enumerate([1e-6, 1e-6, 1e-6, 1e-8, 1e-8, 1e-8]):
+        step = size * np.eye(6)[k]
+        difference = (residuals(step) - residuals(-step))[: len(slopes)] / (2.0 * size)
+        assert slopes[compared, k] == pytest.approx(difference[compared], abs=3e-3 * np.max(np.abs(slopes[:, k])))
+    assert np.count_nonzero(compared) > 200
