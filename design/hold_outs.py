@@ -87,7 +87,8 @@ def cloud(name, seed=None):
     family = name.removeprefix("hold-out-").rsplit("-", 1)[0]
     options = (family, "xyz"[axis] if found.points.shape[1] == 3 else "")
     if options[1]:
-        found = replace(found, points=np.roll(found.points, axis, axis=1))
+        others = None if found.others is None else np.roll(found.others, axis, axis=1)
+        found = replace(found, points=np.roll(found.points, axis, axis=1), others=others)
     return replace(found, options=options)
 
 
