@@ -9,7 +9,7 @@ from bladewright.blade.design.cut import AtRadius, AtX, Cut
 from bladewright.blade.design.fillet import Fillet
 from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.blade.native.cut_faces import face_inside
-from bladewright.errors import DesignError, FitError
+from bladewright.errors import DesignError
 from bladewright.nurbs.domain import reversed as run_back
 from bladewright.nurbs.fit import interpolated
 from bladewright.nurbs.revolution import segment
@@ -290,9 +290,3 @@ def test_a_cylinder_may_be_crossed_against_the_sense_of_the_edge():
     design = example("radial-turbine").changed("tolerance", COARSE)
     blade = built(cut(design, trailing_edge=AtRadius(radius=50.0)))
     assert 0.0 < blade.properties.volume < built(design).properties.volume
-
-
-def test_a_fit_does_not_start_from_a_cut_blade():
-    design = cut(coarse.ROTOR, trailing_edge=AtX(x=68.0))
-    with pytest.raises(FitError, match="start has a cut or fillets"):
-        bw.fit(np.concatenate([side.control_points.reshape(-1, 3) for side in built(design).sides]), start=design)
