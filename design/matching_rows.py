@@ -349,11 +349,11 @@ def stopped(cloud, options, directory):
 
 
 def held_out():
-    """The hold-outs."""
-    for name in hold_outs.SEEDS:
+    """The hold-outs, and those that have been opened."""
+    for name in hold_outs.ALL:
         yield Row(
             name=name,
-            group="hold-outs",
+            group="hold-outs" if name in hold_outs.SEEDS else "opened",
             cloud=partial(lambda of, _: hold_outs.cloud(of), name),
             asked={"max of chord": hold_outs.most(name), **WELL, "seconds": 60},
             limit=240.0,
