@@ -1,4 +1,4 @@
-"""Clouds that are put aside: twice 30 random designs of all families, told apart from the machine's axes and edges they have.
+"""Clouds that are put aside: random designs of all families, told apart from the machine's axes and edges they have.
 
     python design/hold_outs.py [--draw]
 
