@@ -99,3 +99,15 @@ def test_a_blade_of_which_nothing_is_asked_has_no_more_parameters_than_its_point
     said = [" ".join(said_of(points, STATOR, aim, free=None)) for aim in (MatchTarget(), MatchTarget(parameters=30))]
     assert ("the points determine" in said[0]) == few
     assert "the points determine" not in said[1]
+
+
+@pytest.mark.parametrize(("gap", "free", "said"), [(0.0, None, False), (0.5, None, True), (0.5, "stagger", False)])
+def test_a_side_is_shown_by_points_or_by_parameters_that_are_held(gap, free, said):
+    design, draw = example("turbine-section"), np.random.default_rng(3)
+    built = design.build()
+    u = (1.0 - np.cos(np.pi * draw.random((2, 60)))) / 2.0
+    u = u[0][np.abs(u[0] - 0.45) >= gap / 2.0], u[1]
+    points = np.concatenate([np.real(built.curves[side](at)) for side, at in zip(("upper", "lower"), u, strict=True)])
+    points += 5e-4 * built.chord * draw.normal(size=points.shape)
+    found = said_of(points, design, MatchTarget(), free)
+    assert any(each.startswith("the points do not show the upper side at u = 0.") for each in found) is said

@@ -47,6 +47,17 @@ def test_ends_of_a_channel_that_is_given_are_known():
     assert ends_of(free="stagger") == {}
 
 
+@pytest.mark.parametrize(("free", "loose"), [("channel.*", {"hub", "shroud"}), ("channel.hub[*].r", set())])
+def test_a_row_of_no_more_points_than_its_curve_has_parameters_shows_no_end(free, loose):
+    design, draw = example("fan-rotor"), np.random.default_rng(1)
+    parts = [side(draw.random(200), 0.1 + 0.8 * draw.random(200)) for side in design.build().sides]
+    parts += [side(np.array([0.1, 0.5, 0.9]), np.full(3, v)) for side in design.build().sides for v in (0.0, 1.0)]
+    points = np.concatenate(parts)
+    freedom = free_parameters_of(free, None, started=True)
+    task = Task(points=points, weights=np.ones(len(points)), free=freedom, bounds={})
+    assert set(loose_ends(searched(task, design, rounds=0))) == loose
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(not LS89.is_file(), reason="the shared clouds are not here")
 def test_one_side_of_a_turning_vane_alone_does_not_pass():

@@ -4,7 +4,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from bladewright.fitting.assessment.coverage import foreign_edges, least_thickness, loose_ends, uncovered_edges
+from bladewright.fitting.assessment.coverage import (
+    foreign_edges,
+    least_known_place,
+    least_thickness,
+    loose_ends,
+    uncovered_edges,
+)
 from bladewright.fitting.assessment.estimates import ParameterEstimates
 from bladewright.fitting.assessment.measurement import Measurement
 from bladewright.fitting.assessment.report import with_unit
@@ -66,8 +72,27 @@ def failures_of(
             f"the points determine {statistics.rank} of the {len(statistics.estimates)} parameters: give more points, "
             "a number of parameters, or a tolerance"
         )
+    if target.open and not match.interrupted:
+        failures += _not_shown(statistics, match)
     failures += _partly_shown(match)
     return tuple(failures)
+
+
+def _not_shown(statistics: ParameterEstimates, match: Match) -> list[str]:
+    """Where a side of a section or an end of a blade is known less well than is trusted."""
+    chord = match.model.chord
+    limit = GROSS_DEVIATION[1] * chord
+    allowed = f"{100 * limit / chord:.2g} % of the chord are allowed"
+    if match.state.shape.exact is None:
+        side, u, half_width = least_known_place(match, statistics)
+        if half_width <= limit:
+            return []
+        known = f"known there to {with_unit(match.design, half_width, 2)} either way (95 %)"
+        said = f"the points do not show the {SIDES[side]} side at u = {u:.2g}: it is {known}"
+        return [f"{said}, and {allowed}: give more points there, a start, or fixed parameters"]
+    unknown = {name: gap for name, gap in loose_ends(match).items() if gap > limit}
+    said = _loose_ends_message(match, unknown)
+    return [f"{said}, and {allowed}: give points there, or hold the channel"] if unknown else []
 
 
 def _unknown_ends(statistics: ParameterEstimates, match: Match) -> int:

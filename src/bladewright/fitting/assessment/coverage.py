@@ -1,4 +1,4 @@
-"""What a cloud shows of a blade's ends and edges: ends without a row of points, and edges that are bare or cut off."""
+"""What a cloud shows of a blade: its sides between the points, ends without a row, bare and cut edges."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.special import fdtri
 
+from bladewright.fitting.assessment.estimates import ParameterEstimates
 from bladewright.fitting.free_parameters import parameters_of_curve
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS
 from bladewright.fitting.matching.footpoints import Footpoints, Side, footpoints_at
@@ -39,6 +40,10 @@ UNKNOWNS, ROUND_UNKNOWNS = 6, 5
 """place, half width and turn of a face, and the slopes of both sides; place and radius of an arc, and these slopes"""
 SHARES = (0.9, 0.5, 0.1)
 """widths from which a face and an arc are fitted, of the half height of their points"""
+PLACES = 41
+"""places along each side of a section, closer at the edges, at which it is asked how well it is known"""
+NORMAL_95 = 1.96
+"""standard deviations to either side within which 95 % of normal errors are [-]"""
 CONFIDENCE = 0.999
 """with which points are nearer to a face than to a round edge: by the ratio of their variances (Fisher 1925) [-]"""
 
@@ -55,9 +60,11 @@ def loose_ends(match: Match) -> dict[str, float]:
     loose = {}
     for name in END_PARAMETERS:
         wall = walls.get(name)
-        if not parameters_of_curve(match.design, name) & {*match.problem.paths}:
+        free = parameters_of_curve(match.design, name) & {*match.problem.paths}
+        if not free:
             continue
-        if wall is None:
+        # a curve with as many parameters as points meets any
+        if wall is None or len(wall.places) <= len(free):
             loose[name] = chord
         elif wall.spread > max(ROW_SPREAD * chord, ROW_SPREAD_OF_NOISE * match.noise_estimate.noise):
             loose[name] = GAP_OVER_SPREAD * wall.spread / len(wall.places)
@@ -86,6 +93,21 @@ def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:
             wide = float(np.median(width))
             uncovered[name] = wide, wide / _thickness(sides, float(np.median(v)))
     return uncovered
+
+
+def least_known_place(match: Match, statistics: ParameterEstimates) -> tuple[int, float, float]:
+    """The place of a section that the points show least: side, u, and half its 95 % interval along the normal [m].
+
+    By the derivatives of places by the free parameters, and these parameters' covariance. Reference: Bates and Watts
+    1988, section 2.3.2 (inference bands for the expected response).
+    """
+    side, u = np.repeat([0, 1], PLACES), np.tile((1.0 - np.cos(np.linspace(0.0, np.pi, PLACES))) / 2.0, 2)
+    at = footpoints_at(np.zeros((len(u), 2)), match.state.shape.sides, side, u, np.zeros(len(u)))
+    slopes = match.model.along(match.state.shape, at, at.normals, match.problem.paths)
+    variances = np.einsum("nk,kj,nj->n", slopes, statistics.covariance, slopes)
+    half_widths = NORMAL_95 * np.sqrt(np.maximum(variances, 0.0))
+    worst = int(np.argmax(half_widths))
+    return int(side[worst]), float(u[worst]), float(half_widths[worst])
 
 
 def least_thickness(match: Match) -> float:
