@@ -15,7 +15,7 @@ from foreign_blades import SHAPES
 
 from bladewright.errors import BladewrightError
 from bladewright.fitting.clouds.thinning import even_subset
-from bladewright.fitting.initial_guess import blade, channel, hypotheses, meridional_outline, slices
+from bladewright.fitting.initial_guess import blade, channel, meridional_outline, slices
 
 MEASURED, EXAMPLES, FOREIGN = ("Rotor67",), ("compressor-stator", "wedge-diffuser"), ("radial-stator", "twisted-blunt")
 WHOLE = {"TURNS", "BANDS", "BAND_POINTS", "EDGE_SHARE", "LAW_COUNT", "RING_PLACES", "FINE_PER_PLACE", "CORNER_REACH"}
@@ -28,7 +28,7 @@ def machines():
     found |= {name: clouds.cloud_of(clouds.example(name)).points for name in EXAMPLES}
     found |= {name: SHAPES[name]().points(np.random.default_rng(11)) for name in FOREIGN}
     return {
-        name: hypotheses.machine_coordinates(points[even_subset(points, blade.DRAWN_POINTS)], "annular")
+        name: channel.machine_coordinates(points[even_subset(points, blade.DRAWN_POINTS)], "annular")
         for name, points in found.items()
     }
 
@@ -48,7 +48,7 @@ def distances(of):
     found = []
     for machine in of.values():
         try:
-            found.append(hypotheses.ranked_channels(machine, revolved=True)[0].mean_distance)
+            found.append(channel.ranked_channels(machine, revolved=True)[0].mean_distance)
         except (BladewrightError, ArithmeticError, ValueError, IndexError, np.linalg.LinAlgError):
             found.append(np.inf)
     return np.array(found)
@@ -63,7 +63,7 @@ def main():
     for name, value in zip(of, usual, strict=True):
         print(f"| {name} | {value:.1e} |")
     print("\n| number | value | halved: mean, largest ratio | doubled |\n|---|---|---|---|", flush=True)
-    for module in (meridional_outline, channel, hypotheses, slices):
+    for module in (meridional_outline, channel, slices):
         for name in numbers(module):
             value, row = getattr(module, name), []
             for factor in (0.5, 2.0):

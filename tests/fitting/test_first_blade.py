@@ -5,8 +5,7 @@ import pytest
 
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.blade.native.blade import Blade
-from bladewright.fitting.initial_guess.arrangement import arranged_channels, spans_along_y
-from bladewright.fitting.initial_guess.blade import first_blade
+from bladewright.fitting.initial_guess.blade import arranged_channels, first_blade, spans_along_y
 from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.nurbs.closest import closest_on_surface
 from machines import COARSE, built, example

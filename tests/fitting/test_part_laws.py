@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bladewright.fitting.design_header import DesignHeader
-from bladewright.fitting.families.kinds import FAMILIES
+from bladewright.fitting.families.kinds import FAMILIES, DesignHeader
 from bladewright.fitting.families.profile import first_parts, through_points
 from bladewright.fitting.families.section_shape import section_shape
 from bladewright.fitting.families.sections import _through_points, criterion, designs_of
@@ -17,7 +16,7 @@ from bladewright.fitting.model_selection.prediction import LinearModel
 from bladewright.fitting.model_selection.reshaping import reshaped, resizable_laws
 from bladewright.fitting.model_selection.rich_structures import richest
 from bladewright.fitting.model_selection.structure import structure_of
-from bladewright.fitting.models.feasibility import infeasibility
+from bladewright.fitting.models.planar import infeasibility
 from bladewright.section.laws import Span
 from machines.meanlines import BLUNT, on_meanline
 from machines.sectioned import COMPRESSOR, DESIGNS, DIFFUSER

@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bladewright.blade.design.row_design import LengthUnit
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.blade.native.extrema import extrema_of
 from bladewright.derivatives.patterns import Patterns
@@ -21,14 +22,13 @@ from bladewright.fitting.assessment.result import Fit, Motion
 from bladewright.fitting.clouds.cloud import checked_cloud, refuse_several_blades
 from bladewright.fitting.clouds.thinning import isolated_points
 from bladewright.fitting.clouds.walls import walls_of
-from bladewright.fitting.design_header import DesignHeader, Unit
 from bladewright.fitting.families.blades import matched_blade
-from bladewright.fitting.families.kinds import FAMILIES, FitFamily, family_of
+from bladewright.fitting.families.kinds import FAMILIES, DesignHeader, FitFamily, family_of
 from bladewright.fitting.families.sections import matched_section
 from bladewright.fitting.families.unified import matched_unified
 from bladewright.fitting.finishing import Finishing, without_finishing
 from bladewright.fitting.free_parameters import FreeParameters, free_parameters_of
-from bladewright.fitting.initial_guess.arrangement import spans_along_y
+from bladewright.fitting.initial_guess.blade import spans_along_y
 from bladewright.fitting.matching.search import COARSEST_TOLERANCE, Match, Task
 from bladewright.fitting.model_selection.match_target import MatchTarget
 from bladewright.fitting.placing import Matched, PlacedTask, nearest_of, realigned, shown_of
@@ -102,7 +102,7 @@ def fit(
     blade_count: int | None = None,
     pitch: float | None = None,
     name: str = "blade",
-    length_unit: Unit = "mm",
+    length_unit: LengthUnit = "mm",
     progress: Progress | None = None,
 ) -> Fit:
     """The design of a family that matches a cloud of points (n, 2) or (n, 3) [m], and how well it does.

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from bladewright.blade.native.blade import Blade
     from bladewright.blade.native.knots import Knots
 
+LengthUnit = Literal["m", "cm", "mm", "um", "in", "ft"]
+Arrangement = Literal["annular", "linear"]
 BLADES = Limits(1, 10_000, "a whole number of blades is needed (1 to 10000)", closed=True)
 DENSITY = Limits(0.0, float("inf"), "a density must be positive")
 FIELDS_OF = {"annular": ("blade_count", "leading_edge_theta"), "linear": ("pitch", "leading_edge_y")}
@@ -47,9 +49,9 @@ class RowDesign(Design):
 
     name: str
     """the part's name, used in files"""
-    length_unit: Literal["m", "cm", "mm", "um", "in", "ft"]
+    length_unit: LengthUnit
     """unit of every length in the design"""
-    arrangement: Literal["annular", "linear"] = "annular"
+    arrangement: Arrangement = "annular"
     """blades around the machine axis, or side by side in a cascade"""
     blade_count: int | None = field(default=None, metadata={"limits": BLADES})
     """number of blades of an annular row [-]"""

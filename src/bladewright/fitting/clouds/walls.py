@@ -13,8 +13,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from bladewright.blade.design.row_design import Arrangement
 from bladewright.fitting.clouds.thinning import random_subset
-from bladewright.fitting.design_header import Arrangement
 from bladewright.numerics.elementary import cross2
 from bladewright.numerics.robust import median_deviation
 from bladewright.nurbs.basis import Reals

@@ -9,9 +9,8 @@ import numpy as np
 from bladewright.blade.native.blade import Blade
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.design_header import DesignHeader
 from bladewright.fitting.families.flow_path import ChannelCurves
-from bladewright.fitting.families.kinds import FitFamily
+from bladewright.fitting.families.kinds import DesignHeader, FitFamily
 from bladewright.fitting.families.laws import counts_of, nearest_law, part_along_span, with_mean_laws, with_stations_of
 from bladewright.fitting.families.section_shape import SectionShape, section_shape
 from bladewright.fitting.families.sections import compared
@@ -24,7 +23,7 @@ from bladewright.fitting.model_selection.match_target import MatchTarget
 from bladewright.fitting.model_selection.selection import GUESS_NOISE, selected_match
 from bladewright.fitting.model_selection.structure import INITIAL_BLADES, structure_of
 from bladewright.fitting.models.blunt_edges import sides_of
-from bladewright.fitting.models.feasibility import infeasibility
+from bladewright.fitting.models.planar import infeasibility
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import Span, law_points

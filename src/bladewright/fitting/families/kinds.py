@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from bladewright.blade.design.families import BLADE_OF
+from bladewright.blade.design.row_design import Arrangement, LengthUnit
 from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.designs import Design
 from bladewright.fitting.families import (
@@ -19,12 +20,34 @@ from bladewright.fitting.families import (
 from bladewright.fitting.families.section_shape import SectionShape
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber_angle import CamberAngleSection
+from bladewright.section.checks import UNITS
 from bladewright.section.curvature_meanline import CurvatureMeanlineSection
 from bladewright.section.planar import PlanarSection
 from bladewright.section.profiles.kinds import ProfileSection
 from bladewright.section.segmented.part import SegmentedSection
 from bladewright.section.suction_pressure.part import SuctionPressureSection
 from bladewright.section.wedge_diffuser import WedgeDiffuserSection
+
+
+@dataclass(frozen=True, kw_only=True)
+class DesignHeader:
+    """Name, unit and the row that a blade stands in; None where nobody has said it."""
+
+    name: str
+    length_unit: LengthUnit
+    pitch: float | None = None
+    """[m]"""
+    arrangement: Arrangement | None = None
+    blade_count: int | None = None
+
+    def row(self, like: Any = None) -> dict[str, Any]:
+        """Arrangement, blade count and pitch [m]: those of a given design where they are not stated."""
+        stated = {"arrangement": self.arrangement, "blade_count": self.blade_count, "pitch": self.pitch}
+        if like is None:
+            return stated
+        pitch = None if like.pitch is None else like.pitch * UNITS[like.length_unit]
+        known = {"arrangement": like.arrangement, "blade_count": like.blade_count, "pitch": pitch}
+        return {name: known[name] if value is None else value for name, value in stated.items()}
 
 
 @dataclass(frozen=True, kw_only=True)

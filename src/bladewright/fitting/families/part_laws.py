@@ -11,7 +11,7 @@ import numpy as np
 from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.designs import Law
 from bladewright.errors import DesignError
-from bladewright.fitting.initial_guess.laws import plain_law
+from bladewright.fitting.initial_guess.slices import plain_law
 from bladewright.fitting.model_selection.reshaping import (
     COMPARED_PLACES,
     Counts,

@@ -11,8 +11,7 @@ from scipy.special import chdtri
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE
-from bladewright.fitting.design_header import DesignHeader
-from bladewright.fitting.families.kinds import FitFamily
+from bladewright.fitting.families.kinds import DesignHeader, FitFamily
 from bladewright.fitting.families.section_shape import SectionShape, section_shape
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.section import first_section

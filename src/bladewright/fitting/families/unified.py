@@ -8,7 +8,7 @@ from typing import Any
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.design_header import DesignHeader
+from bladewright.fitting.families.kinds import DesignHeader
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.blade import AXES_HINT, first_blade
 from bladewright.fitting.initial_guess.section import first_section

@@ -5,13 +5,12 @@ from typing import Any
 
 import numpy as np
 
+from bladewright.blade.design.row_design import LengthUnit
 from bladewright.designs import Design
 from bladewright.errors import BladewrightError, DesignError, FitError
 from bladewright.fitting.clouds.thinning import even_subset, without_isolated_points
-from bladewright.fitting.design_header import Unit
 from bladewright.fitting.free_parameters import FreeParameters
-from bladewright.fitting.initial_guess.laws import unified_numbers
-from bladewright.fitting.initial_guess.slices import STEEPEST, PlanePoints, longest_chord, slices_of
+from bladewright.fitting.initial_guess.slices import STEEPEST, PlanePoints, longest_chord, slices_of, unified_numbers
 from bladewright.fitting.matching.search import Match, Task, searched
 from bladewright.fitting.model_selection.reshaping import with_feasible_edges
 from bladewright.nurbs.basis import Reals
@@ -37,7 +36,7 @@ def first_section(
     samples: int = 16,
     clustering: float = 1.0,
     name: str = "blade",
-    length_unit: Unit = "mm",
+    length_unit: LengthUnit = "mm",
 ) -> UnifiedSection:
     """A section of the unified family near points (n, 2) [m], x axial and y tangential, found from them alone.
 

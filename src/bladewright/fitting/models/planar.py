@@ -7,9 +7,8 @@ import numpy as np
 
 from bladewright.derivatives.complex_step import STEP
 from bladewright.fitting.models.blunt_edges import BluntEdges, closed_knots, closed_nets
-from bladewright.fitting.models.feasibility import infeasibility
 from bladewright.fitting.models.model import Model, ModelShape, complex_steps, model_of
-from bladewright.numerics.elementary import Array
+from bladewright.numerics.elementary import Array, radians
 from bladewright.nurbs.basis import Reals, greville
 from bladewright.nurbs.curve import Curve
 from bladewright.section.checks import UNITS
@@ -17,6 +16,11 @@ from bladewright.section.laws import Span
 from bladewright.section.native import DEGREE, interpolated_along_u, side_knots_for
 from bladewright.section.outline import Edge, EdgeDerivatives
 from bladewright.section.planar import PlanarSection
+from bladewright.section.segmented.outline import SegmentedOutline
+from bladewright.section.segmented.part import Segmented
+from bladewright.section.suction_pressure.edges import MAX_OPENING, opening
+from bladewright.section.suction_pressure.limits import CHECKED_AT
+from bladewright.section.suction_pressure.part import SuctionPressure, edge_points, sides
 
 SINGLE_SECTION = Span(np.zeros(1))
 """the one place along the span of a section that stands alone"""
@@ -94,3 +98,46 @@ def infeasibility_rates(shape: ModelShape, paths: Sequence[str], span: Span) -> 
 @model_of.register
 def _(design: PlanarSection, tolerance: float | None = None) -> Model:
     return PlanarModel(design, tolerance)
+
+
+SLOWEST_PACE = 0.003
+"""smallest speed of a side's own parameter by s beside an edge, of its mean speed; at 0 the family refuses the side."""
+OPENING_MARGIN = 0.003
+"""smallest distance of an edge's opening from the largest one that the family allows."""
+
+
+def infeasibility(part: Any, span: Span) -> Array:
+    """By how much sections at places along the span are nearer to a refusal than they may be (..., c).
+
+    Values above 0 violate the margin. Raises DesignError where the sections are refused already.
+    """
+    if isinstance(part, Segmented):
+        return _turning_back(part.outline(span))
+    if not isinstance(part, SuctionPressure):
+        return np.zeros(0)
+    edges = edge_points(part, span)
+    rows = [_opening_excess(part, edge, span) for edge in ("leading_edge", "trailing_edge")]
+    for side in sides(part, span, *edges):
+        rows += [SLOWEST_PACE - side.own_parameter(end, CHECKED_AT, 1) for end in (0, 1)]
+    shape = np.broadcast_shapes(*[each.shape[:-2] for each in rows])
+    return np.concatenate([np.broadcast_to(each, (*shape, *each.shape[-2:])).reshape(*shape, -1) for each in rows], -1)
+
+
+def _turning_back(outline: SegmentedOutline) -> Array:
+    """By how much control points of segments lie ahead of the ones before them; those at the nose may (..., c)."""
+    rows = []
+    for side in outline.sides:
+        for number, controls in enumerate(side.controls):
+            x = controls[..., 2 if number == 0 else 0 :, 0]
+            rows.append(x[..., :-1] - x[..., 1:])
+    shape = np.broadcast_shapes(*[each.shape[:-1] for each in rows])
+    return np.concatenate(
+        [np.broadcast_to(each, (*shape, each.shape[-1])).reshape(*shape[:-1], -1) for each in rows], -1
+    )
+
+
+def _opening_excess(part: SuctionPressure, edge: str, span: Span) -> Array:
+    """The same for the two ellipses of an edge (..., m, 2), by their opening."""
+    stretch, skew, wedge = (span.values(getattr(part, f"{edge}_{each}")) for each in ("stretch", "skew", "wedge"))
+    ratios = [opening(stretch * (1.0 + sign * skew), radians(wedge)) for sign in (1.0, -1.0)]
+    return np.stack(np.broadcast_arrays(*ratios), axis=-1) - (MAX_OPENING[part.edges] - OPENING_MARGIN)

@@ -14,10 +14,8 @@ from bladewright.blade.native.knots import DEGREE, Knots
 from bladewright.blade.native.refinement import mean_chord, refined_knots
 from bladewright.derivatives.complex_step import Nets
 from bladewright.fitting.models.blunt_edges import BluntEdges, closed_nets, closed_with
-from bladewright.fitting.models.feasibility import infeasibility
-from bladewright.fitting.models.model import Model, ModelShape, model_of
-from bladewright.fitting.models.planar import infeasibility_rates
-from bladewright.fitting.models.spatial import SpatialModel
+from bladewright.fitting.models.model import Model, ModelShape, SpatialModel, model_of
+from bladewright.fitting.models.planar import infeasibility, infeasibility_rates
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import Span
 

@@ -13,8 +13,7 @@ from bladewright.blade.native.interpolation import native_sides
 from bladewright.blade.native.knots import DEGREE, Knots
 from bladewright.blade.native.refinement import mean_chord, refined_knots
 from bladewright.derivatives.complex_step import STEP, Nets, stepped_design, steps_of
-from bladewright.fitting.models.model import Model, ModelShape, complex_steps, model_of
-from bladewright.fitting.models.spatial import SpatialModel
+from bladewright.fitting.models.model import Model, ModelShape, SpatialModel, complex_steps, model_of
 from bladewright.numerics.elementary import Array, concatenated, cross2, length
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber import camber_points

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.spatial import ConvexHull, cKDTree
 
+from bladewright.blade.design.row_design import Arrangement
 from bladewright.errors import FitError
 from bladewright.fitting.assessment.result import Motion
 from bladewright.fitting.clouds.thinning import random_subset, without_isolated_points
-from bladewright.fitting.design_header import Arrangement
 from bladewright.numerics.robust import TUKEY_WIDTH, median_deviation, tukey_weights
 from bladewright.nurbs.basis import Reals
 

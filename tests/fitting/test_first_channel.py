@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from bladewright.fitting.initial_guess.hypotheses import machine_coordinates, pairings
+from bladewright.fitting.initial_guess.channel import machine_coordinates, pairings
 from bladewright.fitting.initial_guess.meridional_outline import alpha_boundary, corner_sets
 from machines import built, example
 
