@@ -1,0 +1,378 @@
+"""What the constants of `fitting/` decide: quick rows of matching with half and with twice of each.
+
+    python design/matching_constants.py clouds model_selection/selection.py NEAR     rooms, files, names
+    python design/matching_constants.py --all --record design/matching_constants.md
+
+Of a number between a half and one, such as a confidence, the rest to one is halved and doubled. A constant is changed
+in the source of its module when that is imported, so that all who bind it or compute with it have the other value. What
+was reached is kept by the state of the sources in the temporary directory, so that a sweep goes on where it was ended.
+"""
+
+import os
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import argparse
+import ast
+import importlib.machinery
+import json
+import multiprocessing
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from matching import PLACE, state
+
+import bladewright
+
+ROOT = Path(bladewright.__file__).parent / "fitting"
+SECTIONS = ("LS89-free", "Impulse-tolerance", "impulse-thin-free", "naca-blunt-noisy-unified")
+BLADES = ("radial-diffuser-free",)
+ROWS = {
+    "clouds/walls.py": ("walls-compressor-stator", "walls-fan-rotor"),
+    "clouds/repetition.py": ("aachen-annulus", "fan-two", "impeller-two", "compressor-noise"),
+    "clouds": ("ls89-suction", "ls89-outliers", "compressor-outliers"),
+    "registration": ("aligned-compressor", "aligned-fan", "aligned-turbine", "prism-aachen"),
+    "freeform": ("plain-curve", "plain-surface", "plain-profile"),
+    "families": ("Aachen2D-suction-pressure", "naca-sharp-noisy-profile", "opened-curvature-meanline-5"),
+    "families/segmented.py": ("example-morphing-airfoil",),
+    "families/unified.py": (*SECTIONS, *BLADES),
+    "families/flow_path.py": ("example-compressor-stator",),
+    "families/blades.py": ("example-compressor-stator",),
+    "": (*SECTIONS, *BLADES),
+}
+"""rows that are run for a file: of its own name, else of its room, else the last"""
+MATTERS = 1.5
+"""ratio of two figures from which a constant matters"""
+
+
+def constants(root=ROOT):
+    """File, name and value of every module constant that is a number or a tuple of numbers, by name and file."""
+    for path in sorted(root.rglob("*.py")):
+        for here in ast.parse(path.read_text()).body:
+            if not isinstance(here, ast.Assign):
+                continue
+            try:
+                value = ast.literal_eval(here.value)
+            except ValueError:
+                continue
+            several = isinstance(here.targets[0], ast.Tuple)
+            names = [each.id for each in (here.targets[0].elts if several else here.targets)]
+            for name, each in zip(names, value if several else [value], strict=True):
+                if name.isupper() and is_number(each):
+                    yield str(path.relative_to(root)), name, each
+
+
+def is_number(value):
+    """Whether a value is a number, or a tuple or dictionary of numbers."""
+    parts = value.values() if isinstance(value, dict) else value if isinstance(value, tuple) else None
+    if parts is not None:
+        return bool(parts) and all(is_number(each) for each in parts)
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def scaled(value, factor):
+    """A constant's other value."""
+    if isinstance(value, dict):
+        return {key: scaled(each, factor) for key, each in value.items()}
+    if isinstance(value, tuple):
+        return tuple(scaled(each, factor) for each in value)
+    if isinstance(value, int):
+        return round(value * factor)
+    return 1.0 - (1.0 - value) * factor if 0.5 < value < 1.0 else value * factor
+
+
+class Changed(importlib.machinery.SourceFileLoader):
+    """Loads a module with another value of one of its constants."""
+
+    def __init__(self, name, path, constant, value):
+        super().__init__(name, path)
+        self.constant, self.value = constant, value
+
+    def get_code(self, fullname):
+        """The code of the changed source, of which none is kept."""
+        tree = ast.parse(self.get_data(self.get_filename(fullname)))
+        for here in tree.body:
+            if isinstance(here, ast.Assign):
+                target = here.targets[0]
+                several = isinstance(target, ast.Tuple)
+                for i, each in enumerate(target.elts if several else here.targets):
+                    if getattr(each, "id", "") == self.constant:
+                        new = ast.parse(repr(self.value), mode="eval").body
+                        if several:
+                            here.value.elts[i] = new
+                        else:
+                            here.value = new
+        return compile(ast.fix_missing_locations(tree), self.path, "exec")
+
+
+class Finder:
+    """Finds the module whose constant is changed."""
+
+    def __init__(self, module, constant, value):
+        self.module, self.constant, self.value = module, constant, value
+
+    def find_spec(self, name, path, target=None):
+        """Its specification, and of no other."""
+        if name != self.module:
+            return None
+        found = importlib.machinery.PathFinder.find_spec(name, path, target)
+        found.loader = Changed(name, found.origin, self.constant, self.value)
+        return found
+
+
+def reached(name):
+    """What a row reaches: the largest distance (of the chord), parameters, status, and seconds of a processor."""
+    since = time.process_time()
+    kind, _, rest = name.partition("-")
+    if kind in OWN:
+        found = OWN[kind](rest)
+    else:
+        from matching_measures import away
+        from matching_rows import ROWS as MATCHES
+
+        import bladewright as bw
+
+        row = MATCHES[name]
+        with tempfile.TemporaryDirectory() as directory:
+            cloud = row.cloud(Path(directory))
+        since = time.process_time()
+        options = {} if "aligned" in name or row.group == "brought" else row.options
+        if row.group == "opened":
+            import hold_outs
+
+            cloud, options = hold_outs.told(cloud)
+        try:
+            fit = bw.fit(cloud.points, **options)
+            far = away(cloud, fit.built, fit.motion)
+            found = {
+                "far": far["max"] / far["chord"],
+                "parameters": len(fit.estimates),
+                "status": "passed" if fit.passed else "not passed",
+                "left out": len(fit.outliers),
+            }
+        except bw.BladewrightError:
+            found = {"far": None, "parameters": None, "status": "refused"}
+    return {**found, "seconds": found.get("seconds", time.process_time() - since)}
+
+
+def walls_told(machine):
+    """Points of a hub and its fillet that are not told to be there, and those of sides that are, as a share of all."""
+    import numpy as np
+    from walls import of_machine
+
+    from bladewright.fitting.clouds.walls import walls_of
+
+    points, ends = of_machine(machine, 0.03, 1000, 1e-4)
+    since = time.process_time()
+    sides, fillet, hub = np.split(walls_of(points, None).kinds != "", ends)
+    missed = np.count_nonzero(sides) + np.count_nonzero(~fillet) + np.count_nonzero(~hub)
+    return {"far": missed / len(points), "status": "", "parameters": None, "seconds": time.process_time() - since}
+
+
+def aligned(machine, *, started=True):
+    """How far points with noise and outliers are from the place whence they were moved, of the blade's extent."""
+    import matching_clouds as clouds
+    import numpy as np
+
+    from bladewright.fitting.registration import axes, registration
+
+    draw, design = np.random.default_rng(3), clouds.example(clouds.BROUGHT[machine])
+    sides = design.build().sides
+    true = clouds.scattered(sides, 5000, draw)
+    moved = clouds.elsewhere(clouds.strewn(clouds.noisy(true, draw), draw) if started else true)
+    since = time.process_time()
+    if started:
+        motion = registration.registration(moved, design).motion
+    else:
+        motion = axes.found_axes(moved, arrangement="linear")[0]
+    seconds = time.process_time() - since
+    back = motion(clouds.elsewhere(true))
+    extent = np.max(np.ptp(true, axis=0))
+    if not started:
+        # a prism may be shifted, and turned end for end: its span is compared
+        back, true = np.ptp(back, axis=0)[2:], np.ptp(true, axis=0)[2:]
+    return {"far": float(np.max(np.abs(back - true)) / extent), "status": "", "parameters": None, "seconds": seconds}
+
+
+def plain(kind):
+    """How far the truth of three plain fits is from them."""
+    import freeform
+
+    names = {"curve": "curve", "surface": "surface", "profile": "profile"}
+    some = [each for each in freeform.CASES if names[kind] in each][:3]
+    rows = [freeform.measured(each) for each in some]
+    return {
+        "far": 1e-6 * max(row["truth"] for row in rows),
+        "parameters": sum(row["free"] for row in rows),
+        "status": "passed" if all(row["passed"] for row in rows) else "not passed",
+        "seconds": sum(row["seconds"] for row in rows),
+    }
+
+
+OWN = {
+    "walls": walls_told,
+    "aligned": aligned,
+    "prism": lambda machine: aligned(machine, started=False),
+    "plain": plain,
+}
+"""rows of this script alone, by the first word of their names"""
+
+
+def run(path, name, factor, rows, limit):
+    """Print what rows reach with a changed constant, each in a process of its own that ends at the limit."""
+    if name:
+        value = {each: value for of, each, value in constants() if of == path}[name]
+        module = "bladewright.fitting." + path.removesuffix(".py").replace("/", ".")
+        assert module not in sys.modules
+        sys.meta_path.insert(0, Finder(module, name, scaled(value, factor)))
+    for row in rows:
+        ours, theirs = multiprocessing.Pipe(duplex=False)
+
+        def child(row=row, theirs=theirs):
+            resource.setrlimit(resource.RLIMIT_CPU, (int(limit), int(limit) + 2))
+            theirs.send(reached(row))
+
+        process = multiprocessing.get_context("fork").Process(target=child)
+        process.start()
+        theirs.close()
+        try:
+            found = ours.recv()
+        except EOFError:
+            found = {"far": None, "parameters": None, "status": "killed", "seconds": limit}
+        process.join()
+        print(json.dumps({"row": row, **found}), flush=True)
+
+
+def rows_of(path):
+    """The rows that are run for a file."""
+    return ROWS.get(path) or ROWS.get(path.partition("/")[0]) or ROWS[""]
+
+
+def swept(chosen, limit):
+    """Records of constants with half and twice their values, and of none changed."""
+    PLACE.mkdir(exist_ok=True)
+    own = state()
+    kept = PLACE / f"constants-{own}.jsonl"
+    known = {}
+    for line in kept.read_text().splitlines() if kept.exists() else []:
+        record = json.loads(line)
+        known[record["path"], record["name"], record["factor"], record["row"]] = record
+    tasks = [("", "", 1.0, row) for row in dict.fromkeys(row for path, *_ in chosen for row in rows_of(path))]
+    tasks += [(path, name, factor, row) for path, name, _ in chosen for factor in (0.5, 2.0) for row in rows_of(path)]
+    groups = {}
+    for task in tasks:
+        if task not in known:
+            groups.setdefault(task[:3], []).append(task[3])
+    for (path, name, factor), rows in groups.items():
+        command = [sys.executable, __file__, "--run", path, name, str(factor), *rows, "--limit", str(limit)]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        found = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
+        if len(found) < len(rows):
+            # the changed constant breaks an import, or the script
+            words = (done.stderr.strip().splitlines() or [""])[-1]
+            print(f"{path} {name} {factor:g}: {words}", file=sys.stderr)
+            found += [
+                {"row": row, "far": None, "parameters": None, "status": "broke", "seconds": 0.0}
+                for row in rows[len(found) :]
+            ]
+        with kept.open("a") as file:
+            for each in found:
+                record = {"path": path, "name": name, "factor": factor, **each}
+                file.write(json.dumps(record) + "\n")
+                known[path, name, factor, each["row"]] = record
+        if name:
+            value = next(value for of, each, value in chosen if (of, each) == (path, name))
+            print(line(path, name, value, factor, known), flush=True)
+    return own, known
+
+
+def ratios(record, before):
+    """By how much the figures of a record are above or below those of another, each at least 1."""
+    pairs = [(record[key], before[key]) for key in ("far", "parameters", "seconds")]
+    # what is nearer than that is met exactly
+    floors = (1e-6, 1.0, 0.5)
+    return [
+        1.0 if a is None or b is None else max(max(a, floor) / max(b, floor), max(b, floor) / max(a, floor))
+        for (a, b), floor in zip(pairs, floors, strict=True)
+    ]
+
+
+def matters(path, name, known, factors=(0.5, 2.0)):
+    """Whether a constant changes any figure of a row by more than 1.5, or its status."""
+    found = []
+    for factor in factors:
+        for row in rows_of(path):
+            record, before = known[path, name, factor, row], known["", "", 1.0, row]
+            found.append(record["status"] != before["status"] or max(ratios(record, before)) > MATTERS)
+    return any(found)
+
+
+def line(path, name, value, factor, known):
+    """A line of the table: what changed by more than a twentieth, of each row."""
+    cells = []
+    for row in rows_of(path):
+        record, before = known[path, name, factor, row], known["", "", 1.0, row]
+        change = ratios(record, before)
+        words = [record["status"]] if record["status"] != before["status"] else []
+        words += [f"{record['far']:.1e} ({before['far']:.1e})"] if change[0] > 1.05 else []
+        words += [f"{record['parameters']} parameters ({before['parameters']})"] if change[1] > 1.05 else []
+        words += [f"{record['seconds']:.1f} s ({before['seconds']:.1f})"] if change[2] > MATTERS else []
+        cells += [f"{row}: {', '.join(words)}"] if words else []
+    mark = "**" if matters(path, name, known, (factor,)) else ""
+    shown = f"{scaled(value, factor)}".replace("|", "/")
+    return f"| `{path}` {mark}`{name}`{mark} = {value} | {shown} | {'; '.join(cells) or '-'} |"
+
+
+HEAD = """\
+# Constants of matching
+
+`{command}`, sources {state}, {date}: rows of `matching.py` with half and with twice of one constant. A row is named
+where its largest distance (of the chord) or its number of parameters changes by more than a twentieth, its seconds by
+half, or its status; before in brackets. Bold: by more than {matters} times. Rows of this script alone: `walls-`, share
+of a hub's, a fillet's and the sides' points that are taken for others (`walls.py`); `aligned-` and `prism-`, distance
+from their place of points that were moved; `plain-`, of the truth from plain fits (`freeform.py`).
+
+| constant | value | what changes |
+|---|---|---|
+"""
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*", help="rooms, files or names of constants")
+    parser.add_argument("--all", action="store_true", help="every constant")
+    parser.add_argument("--list", action="store_true", help="print the constants and their values")
+    parser.add_argument("--limit", type=float, default=60.0, help="processor seconds of a row")
+    parser.add_argument("--record", type=Path, help="write the table to this file")
+    parser.add_argument("--run", nargs="+", help=argparse.SUPPRESS)
+    given = parser.parse_args()
+    if given.run:
+        path, name, factor, *rows = given.run
+        return run(path, name, float(factor), rows, given.limit)
+    chosen = [
+        each
+        for each in constants()
+        if given.all or {each[0], each[0].partition("/")[0], each[1]} & {each.removesuffix("/") for each in given.names}
+    ]
+    if given.list:
+        print("\n".join(f"{path} {name} = {value}" for path, name, value in chosen))
+        return 0
+    own, known = swept(chosen, given.limit)
+    if given.record:
+        head = HEAD.format(
+            command=f"python {' '.join(['design/matching_constants.py', *sys.argv[1:]])}",
+            state=own,
+            date=time.strftime("%Y-%m-%d"),
+            matters=MATTERS,
+        )
+        lines = [line(path, name, value, f, known) for path, name, value in chosen for f in (0.5, 2.0)]
+        given.record.write_text(head + "\n".join(lines) + "\n", encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
