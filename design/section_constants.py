@@ -19,7 +19,7 @@ import numpy as np
 import bladewright as bw
 from bladewright.section import (
     arc_length,
-    camber_angle_outline,
+    camber_by_angle,
     chebyshev_pieces,
     chord_spline,
     native,
@@ -151,9 +151,9 @@ def main() -> None:
     counts = [{"NODES": n, "MAX_NODES": n} for n in (20, 40, 80, 160, 320, 640)]
     differences("arc length", arc_length, counts, arc_figures)
     differences("arc length", arc_length, [{"STEPS": n} for n in (2, 4, 6, 12)], arc_figures)
-    differences("camber angle", camber_angle_outline, [{"ORDER": n} for n in (8, 12, 16, 48)], turning_figures)
-    differences("camber angle", camber_angle_outline, [{"CUTS": n} for n in (2, 4, 6, 18)], turning_figures)
-    differences("camber angle", camber_angle_outline, [{"NODES": n} for n in (6, 8, 12, 20)], turning_figures)
+    differences("camber angle", camber_by_angle, [{"ORDER": n} for n in (8, 12, 16, 48)], turning_figures)
+    differences("camber angle", camber_by_angle, [{"CUTS": n} for n in (2, 4, 6, 18)], turning_figures)
+    differences("camber angle", camber_by_angle, [{"NODES": n} for n in (6, 8, 12, 20)], turning_figures)
     for values in (
         {"NODES": 15},
         {"NODES": 25},

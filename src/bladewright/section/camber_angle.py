@@ -16,12 +16,8 @@ from bladewright.designs import ChordwiseLaw, Limits, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, concatenated, radians
 from bladewright.section import checks
-from bladewright.section.camber_angle_outline import (
-    CamberAngleOutline,
-    CamberByAngle,
-    SplinePieces,
-    length_fractions,
-)
+from bladewright.section.camber_angle_outline import CamberAngleOutline
+from bladewright.section.camber_by_angle import CamberByAngle, SplinePieces, length_fractions
 from bladewright.section.family import MeridionalFraction, SectionFamily
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
@@ -120,7 +116,8 @@ class CamberAngle(SectionFamily):
         return self._line(span, meridional).stagger
 
     def on_stream_surfaces(self, span: Span, meridional: MeridionalFraction) -> tuple[Outline, Array]:
-        return self.outline(span, meridional), self.stagger(span, meridional)
+        outline = self.outline(span, meridional)
+        return outline, outline.line.stagger
 
     def _line(self, span: Span, meridional: MeridionalFraction | None) -> CamberByAngle:
         angles = _stacked([radians(span.values(law)) for law in self.camber_angle])

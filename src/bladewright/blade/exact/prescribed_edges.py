@@ -49,7 +49,10 @@ class PrescribedEdges(Placement):
 
     def lines(self, v: Reals, mapping: StreamSurfaceMap) -> BladeStreamlines:
         """Stream lines at v (m,) by u between the edges."""
-        return blade_streamlines(self.surfaces, v, mapping, *self.edges(v))
+        key = mapping.plane, v.tobytes()
+        if key not in self._lines:
+            self._lines[key] = blade_streamlines(self.surfaces, v, mapping, *self.edges(v))
+        return self._lines[key]
 
     def edges(self, v: Reals) -> tuple[Array, Array]:
         """t (..., m) where the stream lines at v (m,) meet the leading and the trailing edge.
@@ -63,9 +66,9 @@ class PrescribedEdges(Placement):
         """Where the stream lines at v (m,) meet the leading and the trailing edge: t, and the curve's parameter."""
         new = np.array([each for each in np.unique(v) if each not in self._met])
         if len(new):
-            position = partial(self.surfaces.position, new)
+            position, real = (partial(each.position, new) for each in (self.surfaces, self.surfaces.real()))
             found = [
-                intersections(position, self.surfaces.extent, curve, name, labels(new))
+                intersections(position, self.surfaces.extent, curve, name, labels(new), real=real)
                 for curve, name in zip(self.edge_curves, ("leading_edge", "trailing_edge"), strict=True)
             ]
             self._met.update(
@@ -80,4 +83,9 @@ class PrescribedEdges(Placement):
     @cached_property
     def _met(self) -> dict[float, list[tuple[Array, Array]]]:
         """Intersections with both edges by v: sections, edges and joints need them at many of the same v."""
+        return {}
+
+    @cached_property
+    def _lines(self) -> dict[tuple[str, bytes], BladeStreamlines]:
+        """Stream lines by plane and v: derivatives by the sections' laws need the same ones a few times."""
         return {}

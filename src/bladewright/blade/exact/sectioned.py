@@ -1,6 +1,6 @@
 """The exact blade of sections: for every v the family's section, on its stream surface, where the design places it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 
 ENDS = np.array([0.0, 1.0])
 """Span fractions of hub and shroud."""
+PLACING = ("flow_path", "leading_edge", "trailing_edge", "stacking", "length_unit", "arrangement", "plane")
+"""Fields that stream surfaces and the placement follow from."""
 SPANS = 8
 """Knot spans along a side to begin with; refinement adds where the tolerance needs more."""
 SECTION_TOLERANCE = 1e-10
@@ -123,6 +125,9 @@ class ExactSectionedBlade(ExactBlade):
         return tuple(float(v) for v in spans)
 
     def moved_to(self, design: "SectionedBlade") -> "ExactSectionedBlade":
+        if all(getattr(design, name) is getattr(self.design, name) for name in PLACING):
+            # only sections move: where stream lines run and meet the edges is known
+            return replace(self, design=design)
         return exact_sectioned_blade(design, checked=False)
 
     def breaks_along_u(self) -> Reals:

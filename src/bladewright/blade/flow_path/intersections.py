@@ -31,19 +31,26 @@ Position = Callable[[Reals, int], Array]
 
 
 def intersections(
-    position: Position, extent: tuple[float, float], edge: MeridionalCurve, name: str, labels: list[str]
+    position: Position,
+    extent: tuple[float, float],
+    edge: MeridionalCurve,
+    name: str,
+    labels: list[str],
+    *,
+    real: Position | None = None,
 ) -> tuple[Array, Array]:
     """Where m stream lines, t from extent[0] to extent[1], meet an edge curve, to rounding.
 
     Returns t (..., m) on the stream lines, and the edge curve's own parameter (..., m).
-    `name` is what the edge curve is called in what is refused, and `labels` (m,) what the stream lines are. Raises
-    DesignError where they do not meet, the edge curve continued by EXTENSION of itself at both ends, or meet more than
-    once.
+    `name` is what the edge curve is called in what is refused, and `labels` (m,) what the stream lines are; `real` are
+    their points without imaginary parts and batch, by which the search is faster. Raises DesignError where they do not
+    meet, the edge curve continued by EXTENSION of itself at both ends, or meet more than once.
     """
     t, q = np.linspace(*extent, SAMPLES), np.linspace(-EXTENSION, 1.0 + EXTENSION, SAMPLES)
-    rows = real_first(position(np.broadcast_to(t, (len(labels), SAMPLES)), 0), 3)
+    real = position if real is None else real
+    rows = real_first(real(np.broadcast_to(t, (len(labels), SAMPLES)), 0), 3)
     curve = real_first(edge.values(q), 2)
-    at, own, met = _refined(position, edge, *_starts(rows, curve, t, q), extent)
+    at, own, met = _refined(real, edge.real(), *_starts(rows, curve, t, q), extent)
     chosen = []
     for i, label in enumerate(labels):
         places = _apart(at[i][met[i]], own[i][met[i]])
@@ -67,10 +74,10 @@ def intersections(
 def meeting(curve: MeridionalCurve, edge: MeridionalCurve, name: str, label: str) -> tuple[Array, Array]:
     """Where an edge curve crosses one other curve: parameters (..., 1) of that, and of the edge curve."""
 
-    def position(t: Reals, order: int) -> Array:
-        return curve.values(t[0], order)[..., None, :, :]
+    def along(line: MeridionalCurve) -> Position:
+        return lambda t, order: line.values(t[0], order)[..., None, :, :]
 
-    return intersections(position, (0.0, 1.0), edge, name, [label])
+    return intersections(along(curve), (0.0, 1.0), edge, name, [label], real=along(curve.real()))
 
 
 def curve_joints(

@@ -1,6 +1,6 @@
 """Native curves in (x, r): splines through points or on control points, and straight pieces with rounded corners."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import comb, factorial, perm
 from typing import Literal
@@ -71,6 +71,13 @@ class MeridionalCurve(PiecewisePolynomial):
 
     point_ends: Literal["smooth", "released"] | None = None
     """how the cubic spline through given points ends; None: a curve of another kind"""
+
+    def real(self) -> "MeridionalCurve":
+        """The same without imaginary parts and batch."""
+        if not np.iscomplexobj(self.powers):
+            return self
+        counted = None if self.counted is None else real_first(self.counted, 0)
+        return replace(self, powers=real_first(self.powers, 3), net=real_first(self.net, 2), counted=counted)
 
     @property
     def degree(self) -> int:
