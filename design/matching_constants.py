@@ -14,6 +14,8 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import argparse
 import ast
+import fnmatch
+import importlib
 import importlib.machinery
 import json
 import multiprocessing
@@ -229,6 +231,9 @@ def run(path, name, factor, rows, limit):
         module = "bladewright.fitting." + path.removesuffix(".py").replace("/", ".")
         assert module not in sys.modules
         sys.meta_path.insert(0, Finder(module, name, scaled(value, factor)))
+    # what all rows import, once
+    importlib.import_module("matching_rows")
+    importlib.import_module("bladewright.fitting.fit")
     for row in rows:
         ours, theirs = multiprocessing.Pipe(duplex=False)
 
@@ -247,12 +252,13 @@ def run(path, name, factor, rows, limit):
         print(json.dumps({"row": row, **found}), flush=True)
 
 
-def rows_of(path):
-    """The rows that are run for a file."""
-    return ROWS.get(path) or ROWS.get(path.partition("/")[0]) or ROWS[""]
+def rows_of(path, only=("*",)):
+    """The rows that are run for a file, of those with some names or patterns."""
+    rows = ROWS.get(path) or ROWS.get(path.partition("/")[0]) or ROWS[""]
+    return [row for row in rows if any(fnmatch.fnmatch(row, each) for each in only)]
 
 
-def swept(chosen, limit):
+def swept(chosen, limit, only):
     """Records of constants with half and twice their values, and of none changed."""
     PLACE.mkdir(exist_ok=True)
     own = state()
@@ -261,7 +267,7 @@ def swept(chosen, limit):
     for line in kept.read_text().splitlines() if kept.exists() else []:
         record = json.loads(line)
         known[record["path"], record["name"], record["factor"], record["row"]] = record
-    tasks = [("", "", 1.0, row) for row in dict.fromkeys(row for path, *_ in chosen for row in rows_of(path))]
+    tasks = [("", "", 1.0, row) for row in dict.fromkeys(row for path, *_ in chosen for row in rows_of(path, only))]
     tasks += [(path, name, factor, row) for path, name, _ in chosen for factor in (0.5, 2.0) for row in rows_of(path)]
     groups = {}
     for task in tasks:
@@ -306,6 +312,8 @@ def matters(path, name, known, factors=(0.5, 2.0)):
     found = []
     for factor in factors:
         for row in rows_of(path):
+            if (path, name, factor, row) not in known:
+                continue
             record, before = known[path, name, factor, row], known["", "", 1.0, row]
             found.append(record["status"] != before["status"] or max(ratios(record, before)) > MATTERS)
     return any(found)
@@ -315,6 +323,8 @@ def line(path, name, value, factor, known):
     """A line of the table: what changed by more than a twentieth, of each row."""
     cells = []
     for row in rows_of(path):
+        if (path, name, factor, row) not in known:
+            continue
         record, before = known[path, name, factor, row], known["", "", 1.0, row]
         change = ratios(record, before)
         words = [record["status"]] if record["status"] != before["status"] else []
@@ -346,6 +356,7 @@ def main():
     parser.add_argument("names", nargs="*", help="rooms, files or names of constants")
     parser.add_argument("--all", action="store_true", help="every constant")
     parser.add_argument("--list", action="store_true", help="print the constants and their values")
+    parser.add_argument("--rows", nargs="+", default=["*"], help="names or patterns of the rows that are run")
     parser.add_argument("--limit", type=float, default=60.0, help="processor seconds of a row")
     parser.add_argument("--record", type=Path, help="write the table to this file")
     parser.add_argument("--run", nargs="+", help=argparse.SUPPRESS)
@@ -361,7 +372,7 @@ def main():
     if given.list:
         print("\n".join(f"{path} {name} = {value}" for path, name, value in chosen))
         return 0
-    own, known = swept(chosen, given.limit)
+    own, known = swept(chosen, given.limit, given.rows)
     if given.record:
         head = HEAD.format(
             command=f"python {' '.join(['design/matching_constants.py', *sys.argv[1:]])}",
