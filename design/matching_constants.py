@@ -268,7 +268,9 @@ def swept(chosen, limit, only):
         record = json.loads(text)
         known[record["path"], record["name"], record["factor"], record["row"]] = record
     tasks = [("", "", 1.0, row) for row in dict.fromkeys(row for path, *_ in chosen for row in rows_of(path, only))]
-    tasks += [(path, name, factor, row) for path, name, _ in chosen for factor in (0.5, 2.0) for row in rows_of(path)]
+    tasks += [
+        (path, name, factor, row) for path, name, _ in chosen for factor in (0.5, 2.0) for row in rows_of(path, only)
+    ]
     groups = {}
     for task in tasks:
         if task not in known:
