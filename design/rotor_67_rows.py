@@ -4,7 +4,7 @@
 
 Needs ../shared/data/clouds. The design is the example nasa-rotor-67, a match with 107 parameters. The points of each of
 the 11 rows that lie beside an edge are moved along the chord and across it until they lie nearest to the design; the
-moves of a row are then interpolated from those of the rows on both sides of it. Recorded in design/matches.md.
+moves of a row are then interpolated from those of the rows on both sides of it. Recorded in design/matching.md.
 """
 
 from pathlib import Path

@@ -2,7 +2,7 @@
 
 A penalty alone would stop a search at the kink where an inequality begins to hold; a step that knows the linearised
 inequality slides along it. Where the last step gained little, the next one follows the second derivative of the
-residuals along it: trials of exact sections then converge that had stalled in a curved valley (design/fit_made.md).
+residuals along it: trials of exact sections then converge that had stalled in a curved valley.
 References: Lawson and Hanson 1974, chapter 23 (least distance programming by non-negative least squares); Nielsen 1999
 (damping); Transtrum and Sethna 2012 (second derivative).
 """

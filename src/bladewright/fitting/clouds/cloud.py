@@ -17,7 +17,7 @@ FLATTEST = 1e-5
 """thickness, of its extent, below which a cloud lies on a line or a plane."""
 LARGEST, SMALLEST = 20.0, 5e-3
 """extents of a blade [m] beyond which the cloud's unit is suspected: larger than `LARGEST`, smaller than `SMALLEST`; a
-blade of 4 inches read as millimetres is below 5 mm (design/fit_clouds.md)."""
+blade of 4 inches read as millimetres is below 5 mm."""
 SHEET_SAMPLE = 3000
 """points by which a cloud of one side only is recognised; it bounds the time."""
 

@@ -20,7 +20,7 @@ WALL_COUNTS = (3, 4, 5, 7, 9)
 """points on each wall beside the blade; the fewest are taken that are near enough."""
 WALL_DISTANCE = 0.01
 """distance of a wall from the one that was found that is near enough, of its length: walls found by points alone are no
-better known, and they are parameters (design/fit_families.md)."""
+better known, and they are parameters."""
 WALL_MARGIN = 0.1
 """distance ahead of and behind the blade of the first and last of these points, of its length."""
 CONTINUATION = 0.8

@@ -20,7 +20,7 @@ from bladewright.fitting.model_selection.selection import FINAL_REDUCTION, THORO
 from bladewright.fitting.model_selection.structure import FEWEST_THICKNESSES, INITIAL_BLADES, Structure, structure_of
 
 STRAIGHT_CAMBER = {"tangent_*": (0.12, 1.0)}
-"""bounds of a camber without hooks: shorter tangents let it reach an edge by one (design/fit_made.md)."""
+"""bounds of a camber without hooks: shorter tangents let it reach an edge by one (design/matching.md)."""
 FEWER_SHARES = (1.0, 0.5)
 """shares of the control points along the chord that are tried where the nearest design cannot be built"""
 REDUCED_NOISE, REDUCED_POINTS = 3e-3, 2500

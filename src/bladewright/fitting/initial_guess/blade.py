@@ -133,7 +133,7 @@ point does not belong to it (`ROW_OUTLIER`)."""
 CLEARER_ROW, CLEAR_ROW = 0.5, 1e-3
 """ratio of the scatter of rows about the axis to that on planes which decides; rows on planes must also scatter by less
 than `CLEAR_ROW` of the span. Rows of Aachen's stator with noise scatter by 1.7e-4 of the span about the axis, and by
-1.4e-3 on planes (design/fit_clouds.md)."""
+1.4e-3 on planes (design/matching.md)."""
 
 SPAN_POINTS = 600
 """points by which the span's axis is told; it bounds the time."""

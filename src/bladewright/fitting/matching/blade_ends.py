@@ -34,7 +34,7 @@ FEWEST_ROW_POINTS = 5
 """points that a row at an end needs."""
 ROW_WIDTH, ROW_LEAST_WIDTH = 4.5, 1e-6
 """a point belongs to the row at an end within so many standard deviations of its middle, but within `ROW_LEAST_WIDTH`
-of the places' extent in any case: the sides themselves are no nearer to the walls (design/fit_made.md)."""
+of the places' extent in any case: the sides themselves are no nearer to the walls."""
 ROW_DEGREE, ROW_TURNS, ROW_SETTLING_TURNS = 6, 30, 3
 """highest degree of the polynomial by which a row may be off the wall; it is found in `ROW_TURNS` reweighted turns as a
 quantile, then in `ROW_SETTLING_TURNS` by least squares."""

@@ -26,7 +26,7 @@ NEIGHBOURS = 6
 ALLOWED_SPACINGS, ALLOWED_SPACINGS_EXACT = 1.5, 15.0
 """allowed overhang in spacings of the points beside the edge, and in a cloud that is exact (`ALLOWED_SPACINGS_EXACT`),
 where the true edge must cost nothing even by chance: it had cost 2.4e-3 of the chord on an impeller and on Rotor 67
-(design/fit_made.md)."""
+(design/matching.md)."""
 
 EDGE_ENDS = {"leading_edge": 0.0, "trailing_edge": 1.0}
 """u of both edges"""

@@ -48,8 +48,7 @@ END_BAND, WRONG_END_SHARE = 0.02, 0.2
 """distance from an end of the blade, in v, within which points show it; where more than `WRONG_END_SHARE` of them
 lie past the end, the end is wrong and not the points."""
 PAST_END_BY_CHANCE = 1
-"""points level with the sides that may lie past an end by chance; more show that the end is wrong
-(design/fit_families.md)."""
+"""points level with the sides that may lie past an end by chance; more show that the end is wrong."""
 LEVEL_SLOPE = 0.05
 """a point past an end is level with the sides up to this height per length past the end: the sides may bend there."""
 SPIKE_SLOPE, SPIKE_NEIGHBOURS = 2.0, 0.1

@@ -75,7 +75,7 @@ EXACT_MISFIT = 3e-14
 """misfit below which nothing is left to find, of the chord: rounding of the surfaces themselves."""
 NATIVE_TOLERANCE_OF_NOISE = 0.1
 """tolerance of the native surfaces in a round, of the noise: a tenth adds less than 1 % to the distances. Knots coarser
-than the misfit needs had lost matches that were found (design/fit_families.md)."""
+than the misfit needs had lost matches that were found."""
 COARSEST_TOLERANCE = 1e-4
 """coarsest tolerance of the native surfaces in a search, of the chord."""
 EDGE_RADIUS_MARGIN = {2: 2e-6, 3: 2e-5}

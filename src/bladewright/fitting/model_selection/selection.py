@@ -52,7 +52,7 @@ REFUSED_MARGIN = 6.0
 CORNERS_HELD_NOTE = (
     "the radii of the channel's corners are read off the points at hub and shroud, held, and not counted"
 )
-"""note where the channel's corners are read off the points (design/matches.md)"""
+"""note where the channel's corners are read off the points"""
 HELD_NOTE = "the points do not determine {}, which are held where a smooth design has them"
 """note where parameters are held"""
 DETERMINED_MARGIN, MOST_HOLDINGS = 1.5, 3

@@ -29,7 +29,7 @@ FOLD_GRID = (21, 21)
 COARSE_SEARCH, KNOT_SLACK = 3.0, 100.0
 """tolerance of a search, of the design's own, from which knots may miss walls and edges by the factor `KNOT_SLACK` of
 what `build` promises. On Rotor 67 it saves half of the derivatives' time and changes distances by 1e-5 mm
-(design/matches.md)."""
+(design/matching.md)."""
 SMALLEST_JACOBIAN = 0.02
 """smallest Jacobian of the channel, of its median: a channel that comes nearer to folding over is held there."""
 
