@@ -35,7 +35,7 @@ SECTIONS = ("LS89-free", "Impulse-tolerance", "impulse-thin-free", "naca-blunt-n
 BLADES = ("radial-diffuser-free",)
 ROWS = {
     "clouds/walls.py": ("walls-compressor-stator", "walls-fan-rotor"),
-    "clouds/repetition.py": ("aachen-annulus", "fan-two", "impeller-two", "compressor-noise"),
+    "clouds/cloud.py": ("aachen-annulus", "fan-two", "impeller-two", "ls89-suction"),
     "clouds": ("ls89-suction", "ls89-outliers", "compressor-outliers"),
     "registration": ("aligned-compressor", "aligned-fan", "aligned-turbine", "prism-aachen"),
     "freeform": ("plain-curve", "plain-surface", "plain-profile"),

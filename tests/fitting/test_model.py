@@ -97,7 +97,7 @@ def test_folds_of_a_channel_change_as_central_differences_say():
 def test_residuals_change_as_central_differences_say(name):
     """With feet found anew for each design: as they move along the surface only, to first order it does not matter."""
     design, _ = made(name)
-    points, _ = checked_cloud(cloud(name, 300))
+    points = checked_cloud(cloud(name, 300))
     task = Task(points=points, weights=np.ones(len(points)), free=lambda _: tuple(paths(name)), bounds={})
     problem = searched(task, design, rounds=1, noise=1e-3).problem
     z = problem.vector(design)

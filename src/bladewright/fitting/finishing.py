@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from bladewright.blade.design.row_design import RowDesign
 from bladewright.designs import Design, unit_at
-from bladewright.fitting.assessment.finished_faces import off_walls
+from bladewright.fitting.assessment.measurement import off_walls
 from bladewright.fitting.free_parameters import EDGES, WALLS, FreeParameters
 from bladewright.fitting.matching.search import Task
 from bladewright.nurbs.basis import Reals

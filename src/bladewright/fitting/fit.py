@@ -127,7 +127,7 @@ def fit(
     or the call is wrong, and where no design is found. Reference: Agromayor et al. 2021, section 6.
     """
     tell: Progress = progress or (lambda _: None)
-    points, notes = checked_cloud(cloud)
+    points, notes = checked_cloud(cloud), tuple[str, ...]()
     kind = named_family(family, points.shape[1], start if start is not None else like)
     _check_call(points, kind, start, like, tolerance, parameters)
     finishing, start, like = without_finishing(start, like, name)

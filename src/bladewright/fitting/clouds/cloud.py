@@ -1,12 +1,18 @@
-"""Clouds as they come: what can be fitted at all, and what is suspicious: several blades, one side, a unit."""
+"""Clouds as they come, and what cannot be fitted of them: too few points, one side of a blade, several blades.
+
+Several blades are a wheel that turns onto itself, or pieces that stand apart and are each other's copies. A single
+blade does neither: the further it is turned about the axis, the further it is from itself; and its pieces are rows or
+sides, none of which has a thickness.
+"""
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 from bladewright.errors import FitError
-from bladewright.fitting.clouds.repetition import pitch_found
-from bladewright.fitting.clouds.sheet import is_one_sided
-from bladewright.fitting.clouds.thinning import random_subset
+from bladewright.fitting.clouds.thinning import even_subset, random_subset
 from bladewright.nurbs.basis import Reals
 
 CHECKED_POINTS = 20_000
@@ -15,15 +21,28 @@ FEWEST_POINTS = {2: 24, 3: 100}
 """points that a fit of a section and of a blade needs, by dimension; fewer leave most parameters undetermined."""
 FLATTEST = 1e-5
 """thickness, of its extent, below which a cloud lies on a line or a plane."""
-LARGEST, SMALLEST = 20.0, 5e-3
-"""extents of a blade [m] beyond which the cloud's unit is suspected: larger than `LARGEST`, smaller than `SMALLEST`; a
-blade of 4 inches read as millimetres is below 5 mm."""
 SHEET_SAMPLE = 3000
 """points by which a cloud of one side only is recognised; it bounds the time."""
+THINNEST_BLADE = 1.3e-3
+"""roughness, of its width, below which a cloud is a smooth sheet: one side and no blade."""
+COMPARED_POINTS = 6000, 2000
+"""points among which neighbours are joined: many part blades that stand close, few join the rows of one."""
+NEIGHBOURS = 8
+"""neighbours with which a point may be joined; it bounds the time"""
+GAP = {2: 4.5, 3: 2.5}
+"""distance that parts pieces, in the spacing of the points, by dimension"""
+PIECE_POINTS = {2: 24, 3: 50}
+"""points of the smallest piece, by dimension"""
+SAME_SHAPE = 0.005
+"""distance within which copies lie on each other, of their extent"""
+BLADE_COUNTS = range(2, 152)
+"""numbers of blades around the axis that are tried"""
+TURNED_POINTS = 300
+"""points that are turned by each trial pitch; it bounds the time."""
 
 
-def checked_cloud(cloud: ArrayLike) -> tuple[Reals, tuple[str, ...]]:
-    """The points (n, 2) or (n, 3) [m] as given, and notes on what is suspicious about them.
+def checked_cloud(cloud: ArrayLike) -> Reals:
+    """The points (n, 2) or (n, 3) [m] as given.
 
     Raises FitError for anything but finite numbers in two or three columns, fewer than 24 different points (100 in
     space), points on one line or one plane, and one side of a blade only.
@@ -53,15 +72,7 @@ def checked_cloud(cloud: ArrayLike) -> tuple[Reals, tuple[str, ...]]:
         raise FitError(
             "the cloud holds one side of a blade alone, a sheet without thickness: give the points of both sides"
         )
-    extent = float(np.max(np.ptp(points, axis=0)))
-    notes: tuple[str, ...] = ()
-    if not SMALLEST <= extent <= LARGEST:
-        note = (
-            f"the cloud extends over {extent:.4g} m, which is unusual for a blade: the unit of its coordinates may be "
-            "another one (--unit on the command line)"
-        )
-        notes = (note,)
-    return points, notes
+    return points
 
 
 def refuse_several_blades(points: Reals) -> None:
@@ -91,3 +102,95 @@ def _numbers(cloud: ArrayLike) -> Reals:
             f"{int(np.argmax(bad))}: leave them out"
         )
     return points
+
+
+def is_one_sided(points: Reals) -> bool:
+    """Whether the points are a single sheet: a smooth one passes through the neighbours of most of them."""
+    centred = points - np.mean(points, axis=0)
+    axes = np.linalg.svd(centred, full_matrices=False)[2]
+    own = centred @ axes.T
+    along, height = own[:, :-1], own[:, -1]
+    width = float(np.ptp(along[:, -1])) if along.shape[1] > 1 else float(np.ptp(along))
+    count = 14 if along.shape[1] == 1 else 24
+    some = np.linspace(0, len(points) - 1, 200).astype(int)
+    neighbours = cKDTree(along).query(along[some], k=count)[1]
+    residuals = []
+    for rows in neighbours:
+        t = along[rows] - np.mean(along[rows], axis=0)
+        t = t / max(float(np.max(np.abs(t))), 1e-300)
+        powers = [np.ones(count), *t.T, *(t.T**2), *([t[:, 0] * t[:, 1]] if t.shape[1] > 1 else [])]
+        matrix = np.stack(powers, axis=-1)
+        found = np.linalg.lstsq(matrix, height[rows], rcond=0.03)[0]
+        residuals.append(float(np.sqrt(np.mean((height[rows] - matrix @ found) ** 2))))
+    # where sections are dense at the edges most neighbourhoods are of an edge, which is thin
+    return float(np.percentile(residuals, 90.0)) < THINNEST_BLADE * width
+
+
+def pitch_found(points: Reals) -> str | None:
+    """By how much, in words, a blade in the cloud (n, 2) or (n, 3) [m] lies beside the next; None of a single blade."""
+    wheel = _pitch_of_wheel(points) if points.shape[1] == 3 else None
+    if wheel is not None:
+        return wheel
+    for count in COMPARED_POINTS:
+        some = points[even_subset(points, count)]
+        pieces = [some[rows] for rows in _pieces(some)]
+        if len(pieces) < 2 or is_one_sided(pieces[0]):
+            continue
+        found = [each for each in (_moved_onto(pieces[0], other) for other in pieces[1:]) if each is not None]
+        if found:
+            return min(found)[1]
+    return None
+
+
+def _pieces(points: Reals) -> list[NDArray[np.intp]]:
+    """Indices of the points of each piece that stands apart, largest first."""
+    near, index = cKDTree(points).query(points, k=NEIGHBOURS + 1)
+    dimension = points.shape[1]
+    rows, columns = np.nonzero(near < GAP[dimension] * float(np.percentile(near[:, 1], 95.0)))
+    graph = coo_array((np.ones(len(rows)), (rows, index[rows, columns])), shape=(len(points), len(points)))
+    _, labels = connected_components(graph, directed=False)
+    counts = np.bincount(labels)
+    return [np.flatnonzero(labels == i) for i in np.argsort(-counts) if counts[i] >= PIECE_POINTS[dimension]]
+
+
+def _moved_onto(piece: Reals, other: Reals) -> tuple[float, str] | None:
+    """How far [m] a piece must be moved along y, or turned about x, to lie on another one; None where neither works."""
+    if not 0.6 < len(piece) / len(other) < 1.7:
+        return None
+    tree = cKDTree(other)
+    near = SAME_SHAPE * float(np.sqrt(np.sum(np.ptp(piece, axis=0) ** 2)))
+    near += 1.5 * float(np.median(tree.query(other, k=2)[0][:, 1]))
+    step = np.zeros(piece.shape[1])
+    step[1] = np.mean(other[:, 1]) - np.mean(piece[:, 1])
+    moved = [(piece + step, abs(float(step[1])), f"{abs(float(step[1])):.4g} m")]
+    if piece.shape[1] == 3:
+        angles = [np.arctan2(np.mean(p[:, 1]), np.mean(p[:, 2])) for p in (piece, other)]
+        turn = float((angles[1] - angles[0] + np.pi) % (2.0 * np.pi) - np.pi)
+        radius = float(np.mean(np.sqrt(piece[:, 1] ** 2 + piece[:, 2] ** 2)))
+        moved.append((_turned(piece, turn), abs(turn) * radius, f"{abs(np.degrees(turn)):.4g} deg"))
+    missed = [max(np.mean(tree.query(copy)[0]), np.mean(cKDTree(copy).query(other)[0])) for copy, *_ in moved]
+    best = int(np.argmin(missed))
+    return moved[best][1:] if missed[best] < near else None
+
+
+def _pitch_of_wheel(points: Reals) -> str | None:
+    """The pitch of blades all around the axis, in words.
+
+    Turned by the pitch either way, most points lie twice as near to the cloud as turned by half of it.
+    """
+    tree, some = cKDTree(points), points[random_subset(len(points), TURNED_POINTS)]
+
+    def away(turn: float) -> float:
+        return float(np.median(np.max([tree.query(_turned(some, each))[0] for each in (turn, -turn)], axis=0)))
+
+    whole = np.array([away(2.0 * np.pi / count) for count in BLADE_COUNTS])
+    inner = range(1, len(whole) - 1)
+    lowest = [i for i in inner if whole[i] < min(whole[i - 1], whole[i + 1])]
+    counts = [BLADE_COUNTS[i] for i in lowest if whole[i] < 0.5 * away(np.pi / BLADE_COUNTS[i])]
+    return f"{360.0 / max(counts):.4g} deg" if counts else None
+
+
+def _turned(points: Reals, turn: float) -> Reals:
+    """Points (n, 3) turned about x [rad], from z towards y."""
+    (x, y, z), c, s = points.T, np.cos(turn), np.sin(turn)
+    return np.stack([x, c * y + s * z, c * z - s * y], axis=-1)
