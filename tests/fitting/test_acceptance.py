@@ -5,12 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bladewright.fitting.assessment.acceptance import failures_of
+from bladewright.fitting.assessment.acceptance import MatchTarget, failures_of
 from bladewright.fitting.assessment.estimates import parameter_estimates
 from bladewright.fitting.assessment.measurement import measured
 from bladewright.fitting.free_parameters import free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
-from bladewright.fitting.model_selection.match_target import MatchTarget
 from machines import example
 
 STATOR = example("aachen-stator")

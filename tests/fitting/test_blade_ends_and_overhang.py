@@ -6,8 +6,7 @@ import matching_clouds
 import numpy as np
 import pytest
 
-from bladewright.fitting.matching.blade_ends import blade_ends_of
-from bladewright.fitting.matching.edge_overhang import edge_overhang_of
+from bladewright.fitting.matching.blade_ends import blade_ends_of, edge_overhang_of
 from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footpoints
 from bladewright.fitting.models.model import model_of
 from machines import example

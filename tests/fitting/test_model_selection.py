@@ -6,15 +6,14 @@ from functools import cache
 import numpy as np
 import pytest
 
+from bladewright.fitting.assessment.acceptance import MatchTarget
 from bladewright.fitting.free_parameters import corner_radii, free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
-from bladewright.fitting.model_selection.elimination import best_of_size, eliminated, reweighted
-from bladewright.fitting.model_selection.match_target import MatchTarget
-from bladewright.fitting.model_selection.prediction import LinearModel
-from bladewright.fitting.model_selection.reshaping import reshaped, resizable_laws
-from bladewright.fitting.model_selection.rich_structures import rich_structure, wider_structure
+from bladewright.fitting.model_selection.elimination import LinearModel, best_of_size, eliminated
+from bladewright.fitting.model_selection.reshaping import reshaped, rich_structure, wider_structure
+from bladewright.fitting.model_selection.reweighting import reweighted
 from bladewright.fitting.model_selection.selection import selected_match
-from bladewright.fitting.model_selection.structure import structure_of
+from bladewright.fitting.model_selection.structure import resizable_laws, structure_of
 from machines import example
 from machines.stations import AXIAL
 

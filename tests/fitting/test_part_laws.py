@@ -5,17 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from bladewright.fitting.assessment.acceptance import MatchTarget
 from bladewright.fitting.families.kinds import FAMILIES, DesignHeader
 from bladewright.fitting.families.profile import first_parts, through_points
 from bladewright.fitting.families.section_shape import section_shape
 from bladewright.fitting.families.sections import _through_points, criterion, designs_of
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching.search import Task, searched
-from bladewright.fitting.model_selection.match_target import MatchTarget
-from bladewright.fitting.model_selection.prediction import LinearModel
-from bladewright.fitting.model_selection.reshaping import reshaped, resizable_laws
-from bladewright.fitting.model_selection.rich_structures import richest
-from bladewright.fitting.model_selection.structure import structure_of
+from bladewright.fitting.model_selection.elimination import LinearModel
+from bladewright.fitting.model_selection.reshaping import reshaped, richest
+from bladewright.fitting.model_selection.structure import resizable_laws, structure_of
 from bladewright.fitting.models.planar import infeasibility
 from bladewright.section.laws import Span
 from machines.meanlines import BLUNT, on_meanline

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import bladewright as bw
-from bladewright.fitting.matching.regularisation import (
+from bladewright.fitting.matching.residuals import (
     BEND_SPREAD,
     CAMBER_SPREAD,
     SPREAD_ABOUT_START,

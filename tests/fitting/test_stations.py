@@ -7,8 +7,7 @@ import pytest
 
 import bladewright as bw
 from bladewright.fitting.families.laws import with_stations_of
-from bladewright.fitting.model_selection.reshaping import reshaped
-from bladewright.fitting.model_selection.rich_structures import richest
+from bladewright.fitting.model_selection.reshaping import reshaped, richest
 from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.section.laws import law_points, named_laws, stations_of
 from machines import built

@@ -15,7 +15,7 @@ from bladewright.blade.native.extrema import extrema_of
 from bladewright.derivatives.patterns import Patterns
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.assessment.acceptance import failures_of, notes_of
+from bladewright.fitting.assessment.acceptance import MatchTarget, failures_of, notes_of
 from bladewright.fitting.assessment.estimates import parameter_estimates
 from bladewright.fitting.assessment.measurement import measured
 from bladewright.fitting.assessment.result import Fit, Motion
@@ -30,7 +30,6 @@ from bladewright.fitting.finishing import Finishing, without_finishing
 from bladewright.fitting.free_parameters import FreeParameters, free_parameters_of
 from bladewright.fitting.initial_guess.blade import spans_along_y
 from bladewright.fitting.matching.search import COARSEST_TOLERANCE, Match, Task
-from bladewright.fitting.model_selection.match_target import MatchTarget
 from bladewright.fitting.placing import Matched, PlacedTask, nearest_of, realigned, shown_of
 from bladewright.fitting.registration.axes import axis_motion, found_axes
 from bladewright.fitting.registration.registration import composed, registration

@@ -1,6 +1,7 @@
-"""Whether a match may be trusted, and why not: its deviations against tolerance, noise and chord."""
+"""What is asked of a match, and whether it may be trusted: its deviations against tolerance, noise and chord."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,7 +17,6 @@ from bladewright.fitting.assessment.measurement import Measurement
 from bladewright.fitting.assessment.report import with_unit
 from bladewright.fitting.initial_guess.blade import AXES_HINT
 from bladewright.fitting.matching.search import Match
-from bladewright.fitting.model_selection.match_target import MatchTarget
 from bladewright.nurbs.basis import Reals
 
 NEAR_EVERYWHERE = 5e-4
@@ -44,6 +44,22 @@ the chord apart; the thinnest example, an impeller, has 1.3 %."""
 MIN_SIDE_SHARE, BETWEEN_EDGES = 0.1, 0.1
 """share of the points between the edges below which a side is not shown; `BETWEEN_EDGES` is where the edges end, in
 u."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MatchTarget:
+    """What is asked of a match."""
+
+    tolerance: float | None = None
+    """largest distance of an inlier [m]"""
+    parameters: int | None = None
+    structured: bool = False
+    """whether the structure is given"""
+
+    @property
+    def open(self) -> bool:
+        """Whether nothing is asked for."""
+        return self.tolerance is None and self.parameters is None and not self.structured
 
 
 def failures_of(

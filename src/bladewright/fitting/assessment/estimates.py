@@ -8,7 +8,7 @@ from scipy.special import stdtrit
 
 from bladewright.fitting.assessment.result import Estimate
 from bladewright.fitting.clouds.thinning import random_subset
-from bladewright.fitting.matching.outliers import neighbourhood_of
+from bladewright.fitting.matching.noise import neighbourhood_of
 from bladewright.fitting.matching.residuals import CloudResiduals
 from bladewright.fitting.matching.search import Match
 from bladewright.nurbs.basis import Reals

@@ -9,6 +9,7 @@ import numpy as np
 from bladewright.blade.native.blade import Blade
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
+from bladewright.fitting.assessment.acceptance import MatchTarget
 from bladewright.fitting.families.flow_path import ChannelCurves
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
 from bladewright.fitting.families.laws import counts_of, nearest_law, part_along_span, with_mean_laws, with_stations_of
@@ -19,7 +20,6 @@ from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import Match, Task, searched
-from bladewright.fitting.model_selection.match_target import MatchTarget
 from bladewright.fitting.model_selection.selection import GUESS_NOISE, selected_match
 from bladewright.fitting.model_selection.structure import INITIAL_BLADES, structure_of
 from bladewright.fitting.models.blunt_edges import sides_of

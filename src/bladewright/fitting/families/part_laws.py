@@ -12,16 +12,16 @@ from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.designs import Law
 from bladewright.errors import DesignError
 from bladewright.fitting.initial_guess.slices import plain_law
-from bladewright.fitting.model_selection.reshaping import (
+from bladewright.fitting.model_selection.reshaping import reshaped, richest
+from bladewright.fitting.model_selection.structure import (
     COMPARED_PLACES,
+    MOST_SPAN,
     Counts,
     ResizableLaw,
     law_embedding,
-    reshaped,
     resizable_laws,
+    structure_of,
 )
-from bladewright.fitting.model_selection.rich_structures import richest
-from bladewright.fitting.model_selection.structure import MOST_SPAN, structure_of
 from bladewright.fitting.models.planar import SINGLE_SECTION
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber_angle import CamberAngle

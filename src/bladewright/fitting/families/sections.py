@@ -10,14 +10,13 @@ from scipy.special import chdtri
 
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE
+from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, MatchTarget
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
 from bladewright.fitting.families.section_shape import SectionShape, section_shape
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.section import first_section
 from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, has_systematic_misfit, searched
-from bladewright.fitting.model_selection.match_target import MatchTarget
 from bladewright.fitting.model_selection.selection import (
     NEAR,
     determined,

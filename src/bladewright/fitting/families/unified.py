@@ -8,13 +8,13 @@ from typing import Any
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
+from bladewright.fitting.assessment.acceptance import MatchTarget
 from bladewright.fitting.families.kinds import DesignHeader
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.blade import AXES_HINT, first_blade
 from bladewright.fitting.initial_guess.section import first_section
 from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
-from bladewright.fitting.model_selection.match_target import MatchTarget
 from bladewright.fitting.model_selection.reshaping import reshaped, with_feasible_edges
 from bladewright.fitting.model_selection.selection import FINAL_REDUCTION, THOROUGH_POINTS, selected_match
 from bladewright.fitting.model_selection.structure import FEWEST_THICKNESSES, INITIAL_BLADES, Structure, structure_of

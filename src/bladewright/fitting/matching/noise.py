@@ -1,19 +1,250 @@
-"""How much of a cloud's distances is noise, and how much a misfit of the design: neighbouring points tell.
+"""Which points of a cloud are outliers, and how much of the others' distances is noise: neighbouring points tell.
 
-A misfit of the design varies slowly along the surface; noise does not.
+Along a surface the signed distances of points change steadily, by noise and by what the design misses. Outliers are
+small groups, of one point or of many, that no step within the noise leads to. Where the rest is matched well, distances
+alone tell them. A misfit of the design varies slowly along the surface; noise does not.
 """
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from bladewright.fitting.clouds.thinning import random_subset
+from bladewright.fitting.clouds.thinning import even_subset, random_subset
 from bladewright.fitting.matching.footpoints import Footpoints
-from bladewright.fitting.matching.outliers import ALWAYS_INLIER, OUTLYING_NOISE, neighbourhood_of, outliers_of
-from bladewright.numerics.robust import median_deviation
+from bladewright.numerics.robust import DEVIATION_OVER_MEDIAN, median_deviation
 from bladewright.nurbs.basis import Reals
+
+NEIGHBOURS = {2: 4, 3: 8}
+"""neighbours that a point is compared with, by dimension: two to each side of a curve, a ring on a surface."""
+OUTLYING_NOISE = 6.0
+"""distance of an outlier, in standard deviations of the noise: two of a billion normal points are so far off."""
+NEIGHBOUR_STEP = 5.0
+"""largest difference of neighbours on one surface, in standard deviations of the noise."""
+OUTLYING_MISFIT, OUTLYING_MISFIT_AT_EDGES = 6.0, 60.0
+"""distance of an outlier, in usual misfits of the design, and near an edge (`OUTLYING_MISFIT_AT_EDGES`), where misfits
+are large and neighbours are few. Lower values take points of an edge that is not yet found for outliers."""
+MATCHED = 1.0 / 3.0
+"""misfit, of the noise, below which distances are noise: it adds 5 % to their standard deviation."""
+STEEPER_THAN_AROUND = 4.0
+"""ratio by which the misfit may become steeper than it is around a point."""
+EDGE_BAND = 0.03
+"""distance from an edge, in u, within which a point counts as near it."""
+SIDES_APART = 0.05
+"""distance that the two sides of a thin blade are taken to have, of the extent, so that points of one are not
+neighbours of the other."""
+STEADY_MISFIT = 100.0
+"""usual misfits beyond which a small group away from the edges is outlying though distances rise to it steadily, as on
+the end faces of a solid."""
+CHANCE_EXCESS = 3.0
+"""excess of the usual distance over the noise by chance, in multiples of the noise over the root of the number of
+points."""
+LARGEST_GROUP, SMALL_GROUP = 0.05, 20
+"""largest group of outliers, as a share of the points, but `SMALL_GROUP` points are always allowed."""
+END_BAND, WRONG_END_SHARE = 0.02, 0.2
+"""distance from an end of the blade, in v, within which points show it; where more than `WRONG_END_SHARE` of them
+lie past the end, the end is wrong and not the points."""
+PAST_END_BY_CHANCE = 1
+"""points level with the sides that may lie past an end by chance; more show that the end is wrong."""
+LEVEL_SLOPE = 0.05
+"""a point past an end is level with the sides up to this height per length past the end: the sides may bend there."""
+SPIKE_SLOPE, SPIKE_NEIGHBOURS = 2.0, 0.1
+"""slope to all neighbours that no surface has (`SPIKE_SLOPE`), and height of the neighbours, of the point's own, up to
+which they lie on the surface (`SPIKE_NEIGHBOURS`)."""
+LARGEST_OUTLIER_SHARE = 0.15
+"""share of outliers from which it is the design that lies off, and all points count as inliers."""
+LOCAL_POINTS, LOCAL_OVERLAP = 128, 16
+"""points around a site whose noise and misfit are taken to be alike: a quartile of so many is known to 15 %, and few
+enough follow a scanner whose noise varies; and how many sites a point is around, about (`LOCAL_OVERLAP`)."""
+DEVIATION_OVER_QUARTILE = 3.1384
+"""standard deviation of normal noise over the lower quartile of its magnitude, 1 / Phi^-1(5/8): the points of an end
+face beside a side, half of all there, spoil it less than the median."""
+CORE_NEIGHBOURS = 3
+"""points of the large groups beside a small one to which a step within the noise may lead."""
+ALWAYS_INLIER = 1e-4
+"""distance up to which no point is an outlier, of the cloud's extent: as near as exact points are to be met. The few of
+them at an edge lie further off than the noise that all others show."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Neighbourhood:
+    """Which of n points are beside each other on the sides of a design."""
+
+    places: Reals
+    """(n, d + 1) the footpoints, and a coordinate that holds the sides apart except at the edges"""
+    index: NDArray[np.intp]
+    """(n, k) the nearest other points; the point itself where there are no others"""
+    extent: float
+    """largest extent of the cloud [m]"""
+
+
+def neighbourhood_of(points: Reals, footpoints: Footpoints) -> Neighbourhood:
+    """The neighbours of points (n, d) with known footpoints."""
+    extent = float(np.ptp(points, axis=0).max())
+    inward = np.minimum(np.minimum(footpoints.u, 1.0 - footpoints.u) / EDGE_BAND, 1.0)
+    lifted = np.where(footpoints.side == 0, 1.0, -1.0) * SIDES_APART * extent * inward
+    places = np.column_stack([footpoints.points, lifted])
+    count = NEIGHBOURS[points.shape[1]]
+    neighbours = min(count + 1, len(points))
+    index = np.reshape(cKDTree(places).query(places, k=neighbours)[1], (len(points), neighbours))
+    # of several points in one place, the point itself is not always found first
+    own = index == np.arange(len(points))[:, None]
+    index = np.where(own, index[:, :1], index)[:, 1:]
+    return Neighbourhood(
+        places=places, index=np.pad(index, ((0, 0), (0, count - neighbours + 1)), mode="edge"), extent=extent
+    )
+
+
+def outliers_of(
+    heights: Reals, past: Reals, distances: Reals, weights: Reals, footpoints: Footpoints, around: Neighbourhood
+) -> NDArray[np.bool_]:
+    """Which of n points are outliers, by their signed distances, their way past the ends and their distances [m].
+
+    Weights are positive inverse variances, relative to each other.
+    """
+    index, roots = around.index, np.sqrt(weights)
+    # a median of k neighbours has about 1 / k of the variance
+    spread_out = np.sqrt(1.0 / weights + np.mean(1.0 / weights[index], axis=1) / index.shape[1])
+    deviations = np.abs(heights - np.median(heights[index], axis=1)) / spread_out * np.sqrt(1.0 + 1.0 / index.shape[1])
+    noise = median_deviation(deviations)
+    usual = median_deviation(roots * distances)
+    chance = 1.0 + CHANCE_EXCESS / np.sqrt(len(heights))
+    misfit = float(np.sqrt(max(usual**2 - (chance * noise) ** 2, 0.0)))
+    near, site = _surroundings(around)
+    level = np.maximum(noise, DEVIATION_OVER_QUARTILE * np.quantile(deviations[near], 0.25, axis=1)[site]) / roots
+    edge = (footpoints.u < EDGE_BAND) | (footpoints.u > 1.0 - EDGE_BAND)
+    exact = ALWAYS_INLIER * around.extent
+    # a misfit of the design is told from outliers by going on from point to point
+    matched = misfit < MATCHED * noise
+    slopes, local = np.zeros(len(heights)), np.full(len(heights), misfit)
+    if not matched:
+        steep = _steepness(heights, level, around)
+        slopes = STEEPER_THAN_AROUND * _lower(steep[index])
+        if footpoints.points.shape[1] == 2:
+            # on a blade points of an end face may be most of those around
+            slopes = STEEPER_THAN_AROUND * _median(steep, near)[site]
+            local = np.maximum(misfit, DEVIATION_OVER_MEDIAN * _median(roots * distances, near)[site])
+    least = np.hypot(OUTLYING_NOISE * level, np.where(edge, OUTLYING_MISFIT_AT_EDGES, OUTLYING_MISFIT) * local)
+    least = np.maximum(least, exact)
+    spikes = _spikes(heights, np.maximum(OUTLYING_NOISE * level, exact), around)
+    far = (distances > least) | spikes
+    if not np.any(far):
+        return far
+    wrong = _short_of_ends(far & (past > least), np.abs(heights) <= np.maximum(least, LEVEL_SLOPE * past), footpoints)
+    beyond = (past > least) & ~wrong
+    largest = min(max(SMALL_GROUP, int(LARGEST_GROUP * len(heights))), len(heights) // 5)
+    found = spikes | (far & (beyond | _cut_off(heights, level, beyond, slopes, largest, around)))
+    # past an end that is wrong, only the signed distance from the sides counts
+    off_surface = np.where(wrong, np.abs(heights), distances)
+    if matched:
+        found |= ~edge & (off_surface > least)
+    elif footpoints.points.shape[1] == 3:
+        steady = ~found & (off_surface > np.maximum(np.hypot(OUTLYING_NOISE * level, STEADY_MISFIT * misfit), exact))
+        label = _groups(steady, steady, index)
+        # an edge's radius is shown by few points and may be wrong by itself: these are no outliers
+        found |= steady & (_sizes(label) <= largest) & ~np.isin(label, label[edge & steady])
+    return found if np.mean(found) < LARGEST_OUTLIER_SHARE else np.zeros_like(found)
+
+
+def _spikes(heights: Reals, least: Reals, around: Neighbourhood) -> NDArray[np.bool_]:
+    """Whether points (n,) stand higher above their neighbours, which are on the surface, than these are away.
+
+    No wrong radius of an edge does that.
+    """
+    index, footpoints = around.index, around.places[:, :-1]
+    way = np.sqrt(np.sum((footpoints[index] - footpoints[:, None]) ** 2, axis=-1))
+    step = np.abs(heights[index] - heights[:, None])
+    steep = (step > SPIKE_SLOPE * way) & (step > np.maximum(least[:, None], least[index]))
+    level = np.median(np.abs(heights[index]), axis=1) < SPIKE_NEIGHBOURS * np.abs(heights)
+    return np.asarray(np.all(steep, axis=1) & level)
+
+
+def _short_of_ends(past: NDArray[np.bool_], level: NDArray[np.bool_], footpoints: Footpoints) -> NDArray[np.bool_]:
+    """Whether points (n,) are at an end of the blade that so many are past that it is the end which is wrong.
+
+    It is wrong too where most of the points past it are `level` with the sides that go on there.
+    """
+    wrong = np.zeros(len(past), dtype=bool)
+    for at_end in (footpoints.v < END_BAND, footpoints.v > 1.0 - END_BAND):
+        past_end, onwards = int(np.count_nonzero(past & at_end)), int(np.count_nonzero(past & level & at_end))
+        if past_end > WRONG_END_SHARE * np.count_nonzero(at_end) or onwards > max(PAST_END_BY_CHANCE, past_end // 2):
+            wrong |= at_end
+    return wrong
+
+
+def _surroundings(around: Neighbourhood) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """The points (m, k) around each of m sites, and the site (n,) of every point."""
+    sites = even_subset(around.places, max(1, LOCAL_OVERLAP * len(around.places) // LOCAL_POINTS))
+    near = cKDTree(around.places).query(around.places[sites], k=min(LOCAL_POINTS, len(around.places)))[1]
+    return near.reshape(len(sites), -1), cKDTree(around.places[sites]).query(around.places)[1]
+
+
+def _median(values: Reals, near: NDArray[np.intp]) -> Reals:
+    """The median (m,) of values (n,) of the nearer half of the points (m, k) around sites."""
+    return np.asarray(np.median(values[near[:, : LOCAL_POINTS // 2]], axis=1))
+
+
+def _steepness(heights: Reals, level: Reals, around: Neighbourhood) -> Reals:
+    """How much signed distances (n,) change per length along the surface beyond the noise."""
+    index = around.index
+    way = np.sqrt(np.sum((around.places[index] - around.places[:, None]) ** 2, axis=-1)) + ALWAYS_INLIER * around.extent
+    return _lower(np.maximum(np.abs(heights[index] - heights[:, None]) - NEIGHBOUR_STEP * level[:, None], 0.0) / way)
+
+
+def _lower(values: Reals) -> Reals:
+    """The lower median (n,) of values (n, k)."""
+    middle = (values.shape[1] - 1) // 2
+    return np.asarray(np.partition(values, middle, axis=1)[:, middle])
+
+
+def _cut_off(
+    heights: Reals, level: Reals, beyond: NDArray[np.bool_], slopes: Reals, largest: int, around: Neighbourhood
+) -> NDArray[np.bool_]:
+    """Whether points (n,) are in a group of at most `largest` that no step within the noise leads to."""
+
+    def steps(start: NDArray[np.intp], end: NDArray[np.intp]) -> NDArray[np.bool_]:
+        way = np.sqrt(np.sum((around.places[end] - around.places[start]) ** 2, axis=-1))
+        allowed = NEIGHBOUR_STEP * np.maximum(level[start], level[end]) + ALWAYS_INLIER * around.extent
+        allowed += np.minimum(slopes[start], slopes[end]) * way
+        return (np.abs(heights[end] - heights[start]) <= allowed) & ~beyond[start] & ~beyond[end]
+
+    index = around.index
+    own = np.broadcast_to(np.arange(len(heights))[:, None], index.shape)
+    linked = steps(own, index)
+    label = _groups(np.ones(len(heights), dtype=bool), linked, index)
+    size = _sizes(label)
+    core = np.flatnonzero(size > largest if np.any(size > largest) else size == size.max())
+    separate = np.flatnonzero(~np.isin(np.arange(len(heights)), core))
+    if len(separate) == 0:
+        return np.zeros(len(heights), dtype=bool)
+    _, near = cKDTree(around.places[core]).query(around.places[separate], k=min(CORE_NEIGHBOURS, len(core)))
+    near = core[near.reshape(len(separate), -1)]
+    reached = np.any(steps(np.broadcast_to(separate[:, None], near.shape), near), axis=1)
+    joined = np.zeros(len(heights), dtype=bool)
+    joined[label[core]] = True
+    joined[label[separate[reached]]] = True
+    return ~joined[label]
+
+
+def _groups(rows: NDArray[np.bool_], linked: NDArray[np.bool_], index: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Labels (n,) of the groups that linked neighbours (n, k) form.
+
+    Only points in `rows` are in groups with others; `linked` is (n, k), or (n,) for all neighbours of a point.
+    """
+    count = len(index)
+    taken = rows[:, None] & rows[index] & (linked if linked.ndim == 2 else linked[:, None])
+    start, way = np.nonzero(taken)
+    graph = csr_array((np.ones(len(start), dtype=np.int8), (start, index[start, way])), shape=(count, count))
+    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.intp)
+
+
+def _sizes(label: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Number of points (n,) in each point's group."""
+    return np.bincount(label)[label]
+
 
 COMPARED_POINTS = 20_000
 """points that are compared with their neighbours; it bounds the time, and their noise is known to half a percent."""

@@ -14,13 +14,10 @@ from numpy.typing import NDArray
 from bladewright.designs import Design
 from bladewright.errors import BladewrightError, DesignError, FitError
 from bladewright.fitting.clouds.thinning import random_subset
-from bladewright.fitting.matching.blade_ends import BladeEnds, blade_ends_of
-from bladewright.fitting.matching.edge_overhang import edge_overhang_of
+from bladewright.fitting.matching.blade_ends import BladeEnds, blade_ends_of, edge_overhang_of
 from bladewright.fitting.matching.footpoints import nearest_footpoints
-from bladewright.fitting.matching.noise import NoiseEstimate, noise_of
-from bladewright.fitting.matching.outliers import ALWAYS_INLIER
-from bladewright.fitting.matching.regularisation import regularisation_of
-from bladewright.fitting.matching.residuals import CloudResiduals, MatchProblem, PlacedCloud
+from bladewright.fitting.matching.noise import ALWAYS_INLIER, NoiseEstimate, noise_of
+from bladewright.fitting.matching.residuals import CloudResiduals, MatchProblem, PlacedCloud, regularisation_of
 from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.models.model import Model, model_of
 from bladewright.numerics.least_squares import FIRST_DAMPING, MIN_REDUCTION, constrained_minimum

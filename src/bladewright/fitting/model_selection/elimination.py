@@ -1,18 +1,233 @@
-"""Backward elimination of control points, by predictions about one match (Draper and Smith 1998, section 15.3)."""
+"""Which control points a match needs least: backward elimination by predictions, without a search.
+
+About a match of a rich structure the residuals are a linear function of its control points. Every narrower structure
+is a linear subspace of these, so that the least squares of its match follow from the same derivatives by products.
+Reference: Draper and Smith 1998, section 15.3.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
-from bladewright.fitting.model_selection.prediction import LARGEST_STEP, LinearModel, Prediction
+from bladewright.fitting.matching.scales import scales_of
+from bladewright.fitting.matching.search import Match
+from bladewright.fitting.model_selection.reshaping import reshaped
+from bladewright.fitting.model_selection.reweighting import reweighted
+from bladewright.fitting.model_selection.structure import Counts, ResizableLaw, resizable_laws, structure_of
 from bladewright.nurbs.basis import Reals
+
+LARGEST_STEP = 3
+"""control points that a law loses or gains at a time at most."""
+RIDGE = {2: 0.0, 3: 0.01}
+"""cost of a change of a parameter by its scale, of the sum of squares (Hoerl and Kennard 1970), by dimension:
+linearisations reach about so far. Without it predicted blades lie tens of scales away where points say little, and
+searches from them take half as long again (design/matching.md); those of sections take a tenth of a second."""
+ROUNDING = 1e-14
+"""share of the largest diagonal entry of the normal equations by which their diagonal is raised: their rounding."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Prediction:
+    """The least squares that a structure is predicted to leave."""
+
+    counts: tuple[Counts, ...]
+    """of the resizable laws"""
+    parameters: int
+    cost: float
+    """sum of squares of weighted residuals, regularisation and ridge, in chords"""
+    rows: Reals
+    """(n,) unweighted residuals of the points, in chords; 0 of those that do not take part"""
+    weights: Reals
+    """(n,) of the points"""
+    change: Reals
+    """(k,) of the rich structure's scaled parameters"""
+    inverse: Reals
+    """(j, j) of the normal equations"""
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the residuals, of the chord."""
+        return float(np.sqrt(np.mean(self.rows**2)))
+
+    @property
+    def largest(self) -> float:
+        """The largest residual, of the chord."""
+        return float(np.max(np.abs(self.rows)))
+
+
+class LinearModel:
+    """The residuals of a match as a linear function of its laws' control points."""
+
+    def __init__(self, match: Match, samples: int) -> None:
+        problem = match.problem
+        self.match, self.design, self.samples = match, match.design, samples
+        self.structure = structure_of(match.design)
+        self.points, self.dimension = match.state.footpoints.points.shape
+        self.chord = match.model.chord
+        self.slopes = problem.cloud_residuals.slopes(match.state, problem.paths) * problem.scales.size
+        self.residuals = problem.cloud_residuals.residuals(match.state)
+        """(m,) those of the points first, in chords"""
+        roots = problem.cloud_residuals.roots
+        self.slopes[: self.points] /= np.where(roots > 0.0, roots, np.inf)[:, None]
+        self.residuals[: self.points] /= np.where(roots > 0.0, roots, np.inf)
+        self._penalty = problem.regularisation.matrix
+        self._penalised = problem.regularisation.residuals(problem.vector(match.design))
+        self._set_laws(match)
+        self.weighted(roots**2)
+
+    def _set_laws(self, match: Match) -> None:
+        paths, size, values = match.problem.paths, match.problem.scales.size, match.design.parameters()
+        place = {path: i for i, path in enumerate(paths)}
+        self.laws: list[ResizableLaw] = []
+        self._columns: list[NDArray[np.intp]] = []
+        self._free: list[NDArray[np.bool_]] = []
+        self._values: list[Reals] = []
+        for law in resizable_laws(match.design):
+            own = law.paths(match.design)
+            if not own:
+                continue
+            free = np.array([path in place for path in own])
+            # a law that is held in part keeps its control points, but for the channel's corners
+            if not (np.all(free) or (law.holds_corners and np.any(free))):
+                continue
+            columns = np.array([place[path] for path in own if path in place])
+            self.laws.append(law)
+            self._columns.append(columns)
+            self._free.append(free)
+            self._values.append(np.array([float(values[path]) for path in own]) / size[columns[0]])
+        taken = np.concatenate(self._columns) if self._columns else np.empty(0, dtype=np.intp)
+        self._others = np.setdiff1d(np.arange(len(paths)), taken)
+        self._known: dict[tuple[int, Counts], tuple[Reals, Reals, NDArray[np.bool_], Reals]] = {}
+
+    @property
+    def counts(self) -> tuple[Counts, ...]:
+        """The numbers of control points of its own laws."""
+        return tuple(law.counts(self.structure) for law in self.laws)
+
+    def weighted(self, weights: Reals) -> None:
+        """Weigh the points by weights (n,)."""
+        self.weights = weights
+        roots = np.ones(len(self.residuals))
+        roots[: self.points] = np.sqrt(weights)
+        self.roots = roots
+        columns, rows = self.slopes * roots[:, None], self.residuals * roots
+        self._gram = columns.T @ columns + self._penalty.T @ self._penalty
+        self._right = columns.T @ rows + self._penalty.T @ self._penalised
+        self.ridge = RIDGE[self.dimension] * float(rows @ rows)
+        self._gram[np.diag_indices_from(self._gram)] += self.ridge
+        self._cost = float(rows @ rows + self._penalised @ self._penalised)
+
+    def prediction(self, counts: Sequence[Counts]) -> Prediction | None:
+        """What the match with these numbers of control points leaves; None where it is not determined."""
+        subspace, shift = self.subspace(counts)
+        gram, right = self._normal_equations(subspace, shift)
+        try:
+            inverse = np.asarray(cho_solve(cho_factor(gram), np.eye(len(gram))))
+        except LinAlgError:
+            return None
+        step = -inverse @ right
+        start = self._cost + 2.0 * float(self._right @ shift) + float(shift @ self._gram @ shift)
+        change = subspace @ step + shift
+        return Prediction(
+            counts=tuple(counts),
+            parameters=subspace.shape[1],
+            cost=start + float(right @ step),
+            rows=self.residuals[: self.points] + self.slopes[: self.points] @ change,
+            weights=self.weights,
+            change=change,
+            inverse=inverse,
+        )
+
+    def losses(self, prediction: Prediction) -> list[tuple[float, int, int, Counts]]:
+        """What narrower laws cost: loss for each parameter, their number, the law's number, and its counts.
+
+        The loss is that of the linear constraints under which a law is one of fewer control points (Wald's statistic:
+        Seber and Wild 1989, section 5.2).
+        """
+        found, first = [], len(self._others)
+        for i, (law, counts) in enumerate(zip(self.laws, prediction.counts, strict=True)):
+            part, nearest, free = self._law_subspace(i, counts)
+            own = slice(first, first + part.shape[1])
+            first = own.stop
+            structure = law.resized(self.structure, counts)
+            values = nearest.copy()
+            values[free] += np.linalg.lstsq(
+                part, prediction.change[self._columns[i]] - self._shift(i, counts), rcond=None
+            )[0]
+            for place, count in enumerate(counts):
+                for fewer in range(max(law.limits()[0][place], count - LARGEST_STEP), count):
+                    smaller = (*counts[:place], fewer, *counts[place + 1 :])
+                    embedding = law.embedding(structure, smaller)
+                    lost = np.linalg.qr(embedding, mode="complete")[0][:, embedding.shape[1] :].T
+                    if not len(lost):
+                        # a row that is left out has no laws along the span to lose control points
+                        continue
+                    bent, spread = lost @ values, lost[:, free] @ prediction.inverse[own, own] @ lost[:, free].T
+                    loss = float(bent @ np.linalg.lstsq(spread, bent, rcond=None)[0])
+                    found.append((loss / len(lost), len(lost), i, smaller))
+        return sorted(found)
+
+    def _normal_equations(self, subspace: Reals, shift: Reals) -> tuple[Reals, Reals]:
+        gram = subspace.T @ self._gram @ subspace
+        gram[np.diag_indices_from(gram)] += ROUNDING * float(np.max(np.diag(gram)))
+        return gram, subspace.T @ (self._right + self._gram @ shift)
+
+    def subspace(self, counts: Sequence[Counts]) -> tuple[Reals, Reals]:
+        """The rich structure's parameters (k, j) by those of a narrower one, and their change (k,) to the nearest."""
+        parts = [self._law_subspace(i, each)[0] for i, each in enumerate(counts)]
+        width = len(self._others) + sum(part.shape[1] for part in parts)
+        found, shift = np.zeros((self.slopes.shape[1], width)), np.zeros(self.slopes.shape[1])
+        found[self._others, np.arange(len(self._others))] = 1.0
+        first = len(self._others)
+        for i, (columns, part) in enumerate(zip(self._columns, parts, strict=True)):
+            last = first + part.shape[1]
+            found[columns, first:last] = part
+            shift[columns] = self._shift(i, counts[i])
+            first = last
+        return found, shift
+
+    def _law_subspace(self, law: int, counts: Counts) -> tuple[Reals, Reals, NDArray[np.bool_]]:
+        """A law's free parameters by those with other counts, the nearest of these, and which of them are free."""
+        key = law, counts
+        if key not in self._known:
+            embedding, free = self.laws[law].embedding(self.structure, counts), self._free[law]
+            nearest = np.asarray(np.linalg.lstsq(embedding, self._values[law], rcond=None)[0], dtype=np.float64)
+            kept = np.ones(embedding.shape[1], dtype=bool)
+            kept[[int(np.argmax(row)) for row in embedding[~free]]] = False
+            shift = (embedding @ nearest - self._values[law])[free]
+            self._known[key] = embedding[np.ix_(free, kept)], nearest, kept, shift
+        return self._known[key][:3]
+
+    def _shift(self, law: int, counts: Counts) -> Reals:
+        """The change of a law's free parameters to the nearest ones of other counts."""
+        self._law_subspace(law, counts)
+        return self._known[law, counts][3]
+
+    def structured(self, counts: Sequence[Counts]) -> Any:
+        """The structure with these numbers of control points."""
+        structure = self.structure
+        for law, each in zip(self.laws, counts, strict=True):
+            structure = law.resized(structure, each)
+        return structure
+
+    def designed(self, prediction: Prediction) -> Any:
+        """The predicted design, its laws within the family's bounds."""
+        paths, structure = self.match.problem.paths, self.structured(prediction.counts)
+        values = self.match.problem.values_of(self.design) + self.match.problem.scales.size * prediction.change
+        scales = scales_of(self.design, paths, self.chord)
+        values = np.clip(values, scales.low, scales.high)
+        rich = self.design.changed({path: float(value) for path, value in zip(paths, values, strict=True)})
+        return reshaped(rich, structure.with_samples(self.samples))
+
 
 SURPLUS_DIVISOR = 12
 """one in so many of the surplus parameters goes between two predictions."""
 CHEAP_LOSS = 3.0
 """predicted loss for each parameter, of the least, up to which a law loses control points together with it."""
-WEIGHTED_DEVIATION = 0.8
-"""deviation, of the tolerance, from which a point's weight rises."""
-WEIGHT_CHANGE, WEIGHT_RANGE = (0.5, 2.0), (0.02, 50.0)
-"""range by which the weight of a point changes at a time, and in all (`WEIGHT_RANGE`)."""
 REWEIGHTINGS = 12
 """times that weights change for a prediction at most"""
 PREDICTED, LARGEST_PREDICTED = 0.95, 1.5
@@ -56,13 +271,6 @@ def reweighted_prediction(model: LinearModel, prediction: Prediction, tolerance:
         if prediction.largest <= PREDICTED * tolerance:
             break
     return prediction
-
-
-def reweighted(weights: Reals, distances: Reals, tolerance: float) -> Reals:
-    """Weights (n,) of points that rise with their distances (Lawson 1961); points that do not take part have none."""
-    factors = np.clip(distances / (WEIGHTED_DEVIATION * tolerance), *WEIGHT_CHANGE)
-    found = np.where(weights > 0.0, np.clip(weights * factors, *WEIGHT_RANGE), 0.0)
-    return np.asarray(found * (np.sum(weights) / np.sum(found)))
 
 
 EXCHANGES_TRIED = 4

@@ -1,9 +1,8 @@
 """The same shape with other numbers of control points, as nearly as they allow, and with edges of a valid shape."""
 
-from abc import ABC, abstractmethod
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import singledispatch
-from typing import Any, ClassVar, final
+from typing import Any
 
 import numpy as np
 
@@ -13,21 +12,19 @@ from bladewright.designs import Design, Law, Point, Points, Stations
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.matching.search import COARSEST_TOLERANCE
 from bladewright.fitting.model_selection.structure import (
-    CHANNEL_CURVES,
-    FEWEST_THICKNESSES,
-    MOST_CHORDWISE,
-    MOST_CURVE,
-    MOST_SPAN,
+    COMPARED_PLACES,
     SPANWISE,
     Structure,
+    law_field,
+    resizable_laws,
+    samples_of,
     structure_of,
 )
 from bladewright.fitting.models.model import model_of
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
-from bladewright.section.laws import Span, law_basis, law_points, number_paths, sampled_at, stations_of, with_values
+from bladewright.section.laws import Span, law_basis, law_points, sampled_at, stations_of, with_values
 from bladewright.section.unified import UnifiedSection
 from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNESSES
-from bladewright.section.unified_sides import sample_places
 
 LAW_LIMITS = {
     **dict.fromkeys(ANGLES, (-88.0, 88.0)),
@@ -35,8 +32,6 @@ LAW_LIMITS = {
     **dict.fromkeys(RADII, (1e-4, 0.9)),
 }
 """within which a law is kept that another number of control points would carry past the family's own limits"""
-COMPARED_PLACES = np.linspace(0.0, 1.0, 101)
-"""parameters at which laws and curves are compared"""
 
 
 @singledispatch
@@ -58,7 +53,7 @@ def _(design: UnifiedSection, structure: Structure) -> Design:
 
 @reshaped.register
 def _(design: UnifiedBlade, structure: Structure) -> Design:
-    place = _field(design, "place")
+    place = law_field(design, "place")
     changes: dict[str, Any] = {
         name: law_of(getattr(design, name), structure.span[name], LAW_LIMITS[name]) for name in SPANWISE
     }
@@ -78,13 +73,6 @@ def _(design: UnifiedBlade, structure: Structure) -> Design:
         channel=_channel(design.channel, structure),
         **changes,
     )
-
-
-def _field(design: Any, name: str) -> str:
-    """The field of a law by its name in a structure."""
-    if name != "place":
-        return name
-    return "leading_edge_theta" if design.arrangement == "annular" else "leading_edge_y"
 
 
 def _values(law: Law) -> Reals:
@@ -125,11 +113,6 @@ def grid_of(
     return np.asarray(np.maximum(rows, least))
 
 
-def samples_of(structure: Structure) -> Reals:
-    """Places along the chord at which laws of the thickness are compared."""
-    return np.sort(np.concatenate([sample_places(structure.samples, structure.clustering)[2:-2], COMPARED_PLACES]))
-
-
 def _channel(channel: Channel, structure: Structure) -> Channel:
     corners = [channel.leading_edge[0], channel.leading_edge[-1], channel.trailing_edge[0], channel.trailing_edge[-1]]
     curves = {
@@ -162,158 +145,6 @@ def curve_of(points: Points, count: int, highest: int) -> Points:
     return tuple(Point(float(x), float(r)) for x, r in full)
 
 
-Counts = tuple[int, ...]
-"""numbers of control points of a law along its directions, or of several curves"""
-
-
-@dataclass(frozen=True)
-class ResizableLaw(ABC):
-    """A law whose number of control points may change by itself; or curves that share points."""
-
-    name: str
-    """its name in a structure"""
-    holds_corners: ClassVar[bool] = False
-    """whether it may change though some of its parameters, the corners of a channel, are held"""
-
-    @abstractmethod
-    def counts(self, structure: Any) -> Counts:
-        """Its numbers of control points."""
-
-    @abstractmethod
-    def resized(self, structure: Any, counts: Counts) -> Any:
-        """The structure with other numbers of them."""
-
-    @abstractmethod
-    def limits(self) -> tuple[Counts, Counts]:
-        """Fewest and most of them."""
-
-    @abstractmethod
-    def paths(self, design: Any) -> list[str]:
-        """The parameters (k,) that are its control points' numbers."""
-
-    @abstractmethod
-    def embedding(self, structure: Any, counts: Counts) -> Reals:
-        """Its numbers (k, j) in a structure that are nearest to those of a law with other counts."""
-
-
-@final
-class SpanLaw(ResizableLaw):
-    """A law along the span."""
-
-    def counts(self, structure: Structure) -> Counts:
-        return (structure.span[self.name],)
-
-    def resized(self, structure: Structure, counts: Counts) -> Structure:
-        return replace(structure, span={**structure.span, self.name: counts[0]})
-
-    def limits(self) -> tuple[Counts, Counts]:
-        return (1,), (MOST_SPAN,)
-
-    def paths(self, design: Any) -> list[str]:
-        name = _field(design, self.name)
-        return number_paths(getattr(design, name), name)
-
-    def embedding(self, structure: Structure, counts: Counts) -> Reals:
-        return law_embedding(structure.span[self.name], counts[0], COMPARED_PLACES)
-
-
-@final
-class ThicknessLaw(ResizableLaw):
-    """A thickness, along the chord and along the span."""
-
-    def counts(self, structure: Structure) -> Counts:
-        return structure.chordwise[THICKNESSES.index(self.name)], structure.span.get(self.name, 1)
-
-    def resized(self, structure: Structure, counts: Counts) -> Structure:
-        chordwise = [*structure.chordwise]
-        chordwise[THICKNESSES.index(self.name)] = counts[0]
-        span = {**structure.span, self.name: counts[1]} if self.name in structure.span else structure.span
-        return replace(structure, chordwise=(chordwise[0], chordwise[1]), span=span)
-
-    def limits(self) -> tuple[Counts, Counts]:
-        return (FEWEST_THICKNESSES, 1), (MOST_CHORDWISE, MOST_SPAN)
-
-    def paths(self, design: Any) -> list[str]:
-        rows = enumerate(getattr(design, self.name))
-        return [path for i, law in rows for path in number_paths(law, f"{self.name}[{i}]")]
-
-    def embedding(self, structure: Structure, counts: Counts) -> Reals:
-        along, across = self.counts(structure)
-        chordwise = law_embedding(along, counts[0], samples_of(structure))
-        return np.asarray(np.kron(chordwise, law_embedding(across, counts[1], COMPARED_PLACES)))
-
-
-@final
-@dataclass(frozen=True)
-class ChannelCurves(ResizableLaw):
-    """The four curves of a channel, which share its corners."""
-
-    degree: int
-    """highest degree of the curves"""
-    holds_corners: ClassVar[bool] = True
-
-    def counts(self, structure: Structure) -> Counts:
-        return tuple(structure.channel[name] for name in CHANNEL_CURVES)
-
-    def resized(self, structure: Structure, counts: Counts) -> Structure:
-        return replace(structure, channel=dict(zip(CHANNEL_CURVES, counts, strict=True)))
-
-    def limits(self) -> tuple[Counts, Counts]:
-        return (2,) * 4, (MOST_CURVE,) * 4
-
-    def paths(self, design: Any) -> list[str]:
-        curves = [(name, len(getattr(design.channel, name))) for name in CHANNEL_CURVES]
-        return [f"channel.{name}[{i}].{axis}" for name, count in curves for i in range(count) for axis in "xr"]
-
-    def embedding(self, structure: Structure, counts: Counts) -> Reals:
-        own = self.counts(structure)
-        rows, columns = (np.cumsum([0, each[0], each[1], each[2] - 2, each[3] - 2]) for each in (own, counts))
-        found = np.zeros((rows[-1], columns[-1]))
-        for curve in range(4):
-            part = curve_embedding(own[curve], counts[curve], self.degree)
-            inner = slice(rows[curve], rows[curve + 1]), slice(columns[curve], columns[curve + 1])
-            if curve < 2:
-                found[inner] = part
-                continue
-            # a wall's ends are the edges' ends
-            corners = [columns[0], columns[1]] if curve == 2 else [columns[1] - 1, columns[2] - 1]
-            found[inner] = part[1:-1, 1:-1]
-            found[inner[0], corners] = part[1:-1, [0, -1]]
-        return np.asarray(np.kron(found, np.eye(2)))
-
-
-@singledispatch
-def resizable_laws(design: Any) -> list[ResizableLaw]:
-    """The laws of a design whose numbers of control points may change: stations stay."""
-    structure = structure_of(design)
-    laws: list[ResizableLaw] = [ThicknessLaw(name) for name in THICKNESSES if name not in structure.stations]
-    laws += [SpanLaw(name) for name in structure.span if name not in THICKNESSES and name not in structure.stations]
-    return [*laws, ChannelCurves("channel", design.channel.degree)] if structure.channel else laws
-
-
-def law_embedding(count: int, other: int, places: Reals) -> Reals:
-    """Control points (count, other) of the laws nearest to those of another number, at places (n,)."""
-    if count == other:
-        return np.eye(count)
-    return np.asarray(np.linalg.lstsq(law_basis(count, places), law_basis(other, places), rcond=None)[0])
-
-
-def curve_embedding(count: int, other: int, highest: int) -> Reals:
-    """Control points (count, other) of the curves nearest to those of other numbers, between the same ends."""
-    if count == other:
-        return np.eye(count)
-    own, rhs = (_curve_basis(each, highest) for each in (count, other))
-    found = np.zeros((count, other))
-    found[0, 0] = found[-1, -1] = 1.0
-    found[1:-1] = np.linalg.lstsq(own[:, 1:-1], rhs - own @ found, rcond=None)[0]
-    return found
-
-
-def _curve_basis(count: int, highest: int) -> Reals:
-    degree = min(count - 1, highest)
-    return np.asarray(basis(uniform_knots(count, degree), degree, COMPARED_PLACES))
-
-
 THINNER_EDGES, MOST_THINNINGS = 0.7, 12
 """ratio by which the thickness beside the edges is reduced at a time, `MOST_THINNINGS` times at most."""
 
@@ -342,3 +173,57 @@ def _has_shape(design: UnifiedSection | UnifiedBlade) -> bool:
             return model_of(design, COARSEST_TOLERANCE).shape(design).finite
     except DesignError:
         return False
+
+
+RICH_CHORDWISE = {2: 24, 3: 10}
+"""control points along the chord of a rich structure, by dimension."""
+RICH_SPAN = {"thickness": 6, "radius": 4, "tangent": 6, "": 8}
+"""control points along the span of its laws, by what their names hold."""
+SHARES = (1.0, 0.8, 0.6, 0.4, 0.2, 0.0)
+"""shares of the further control points of a rich structure that are tried where points are few."""
+POINTS_PER_PARAMETER = 2
+"""points for each parameter of a rich structure at least: published profiles have few points."""
+RICH_CHANNEL = (8, 8, 6, 6)
+"""control points of the edges, of hub and of shroud."""
+
+
+def rich_structure(design: Design, points: int) -> Any:
+    """A structure with more control points in every law than a match of so many points is likely to need."""
+    return _towards(richest(design), design, points)
+
+
+def wider_structure(design: Design, points: int) -> Any:
+    """A rich structure with a third as many control points again in every law of a design."""
+    own, wide = structure_of(design), richest(design)
+    for law in resizable_laws(design):
+        counts = zip(law.counts(own), law.counts(wide), law.limits()[1], strict=True)
+        wide = law.resized(wide, tuple(max(rich, min(count + count // 3, most)) for count, rich, most in counts))
+    return _towards(wide, design, points)
+
+
+def _towards(whole: Any, design: Design, points: int) -> Any:
+    """A structure with more control points than a design's own, or as large a share of them as the points allow."""
+    own = structure_of(design)
+    for share in SHARES:
+        rich = own
+        for law in resizable_laws(design):
+            counts = zip(law.counts(own), law.counts(whole), strict=True)
+            rich = law.resized(rich, tuple(count + round(share * (most - count)) for count, most in counts))
+        rich = rich.with_samples(own.samples)
+        if len(reshaped(design, rich).parameters()) * POINTS_PER_PARAMETER <= points:
+            break
+    return rich
+
+
+@singledispatch
+def richest(design: Design) -> Any:
+    """The structure with all the control points that a match may begin with."""
+    own = structure_of(design)
+    least = RICH_CHORDWISE[3 if own.channel else 2]
+    span = {
+        name: max(count, 0 if name in own.stations else next(most for word, most in RICH_SPAN.items() if word in name))
+        for name, count in own.span.items()
+    }
+    channel = {name: max(count, most) for (name, count), most in zip(own.channel.items(), RICH_CHANNEL, strict=False)}
+    chordwise = max(own.chordwise[0], least), max(own.chordwise[1], least)
+    return replace(own, chordwise=chordwise, span=span, channel=channel)

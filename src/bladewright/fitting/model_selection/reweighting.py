@@ -6,14 +6,24 @@ import numpy as np
 
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
-from bladewright.fitting.model_selection.elimination import reweighted
 from bladewright.nurbs.basis import Reals
 
+WEIGHTED_DEVIATION = 0.8
+"""deviation, of the tolerance, from which a point's weight rises."""
+WEIGHT_CHANGE, WEIGHT_RANGE = (0.5, 2.0), (0.02, 50.0)
+"""range by which the weight of a point changes at a time, and in all (`WEIGHT_RANGE`)."""
 REWEIGHTINGS = 6
 """searches of one structure with other weights at most"""
 TOUCHED = 0.05
 """excess over the tolerance, of it, that the last of these is foreseen to have where they go on: each reduces it by the
 same ratio as the one before."""
+
+
+def reweighted(weights: Reals, distances: Reals, tolerance: float) -> Reals:
+    """Weights (n,) of points that rise with their distances (Lawson 1961); points that do not take part have none."""
+    factors = np.clip(distances / (WEIGHTED_DEVIATION * tolerance), *WEIGHT_CHANGE)
+    found = np.where(weights > 0.0, np.clip(weights * factors, *WEIGHT_RANGE), 0.0)
+    return np.asarray(found * (np.sum(weights) / np.sum(found)))
 
 
 def nearest_to_tolerance(task: Task, start: Match, weights: Reals, rich: Match, tolerance: float) -> Match:

@@ -15,25 +15,27 @@ import numpy as np
 
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.assessment.acceptance import EXACT, NEAR_EVERYWHERE
+from bladewright.fitting.assessment.acceptance import EXACT, NEAR_EVERYWHERE, MatchTarget
 from bladewright.fitting.assessment.estimates import undetermined_parameters
 from bladewright.fitting.free_parameters import corner_radii
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, evaluated, has_systematic_misfit, searched
+from bladewright.fitting.model_selection.edges import from_other_edges, with_sharp_edges
 from bladewright.fitting.model_selection.elimination import (
     LARGEST_PREDICTED,
     PREDICTED,
+    LinearModel,
+    Prediction,
     best_of_size,
     eliminated,
-    reweighted,
     reweighted_prediction,
 )
-from bladewright.fitting.model_selection.match_target import MatchTarget
-from bladewright.fitting.model_selection.other_edges import from_other_edges
-from bladewright.fitting.model_selection.prediction import LinearModel, Prediction
-from bladewright.fitting.model_selection.reshaping import reshaped, with_feasible_edges
-from bladewright.fitting.model_selection.reweighting import confirmed_match, largest_of, nearest_to_tolerance
-from bladewright.fitting.model_selection.rich_structures import rich_structure, wider_structure
-from bladewright.fitting.model_selection.sharp_edges import with_sharp_edges
+from bladewright.fitting.model_selection.reshaping import reshaped, rich_structure, wider_structure, with_feasible_edges
+from bladewright.fitting.model_selection.reweighting import (
+    confirmed_match,
+    largest_of,
+    nearest_to_tolerance,
+    reweighted,
+)
 from bladewright.fitting.model_selection.structure import Structure, structure_of
 
 GUESS_NOISE = 3e-3
