@@ -12,7 +12,7 @@ from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.residuals import PlacedCloud
 from bladewright.fitting.matching.search import Task, evaluated
-from bladewright.fitting.registration.registration import motion_by, motion_rates
+from bladewright.fitting.registration import motion_by, motion_rates
 from machines import COARSE, built, example
 
 TRUTH = example("turbine-section")

@@ -6,8 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from bladewright.errors import FitError
 from bladewright.fitting.assessment.result import Motion
-from bladewright.fitting.registration.axes import axis_motion, found_axes
-from bladewright.fitting.registration.registration import registration
+from bladewright.fitting.registration import axis_motion, found_axes, registration
 from machines import built, example
 
 
@@ -33,48 +32,40 @@ def thrown(seed):
 @pytest.mark.parametrize("name", ["radial-turbine", "vki-ls89"])
 def test_points_of_the_design_itself_are_moved_back_within_a_billionth_of_the_chord(name):
     points = cloud(name, 1200)
-    found = registration(thrown(1)(points), example(name))
+    motion, notes = registration(thrown(1)(points), example(name))
     # what was asked of noise-free points
-    assert np.abs(found.motion(thrown(1)(points)) - points).max() < 1e-9 * built(example(name)).chord
-    assert found.same
-    assert not found.undetermined
+    assert np.abs(motion(thrown(1)(points)) - points).max() < 1e-9 * built(example(name)).chord
+    assert not notes
 
 
 def test_half_a_span_with_noise_and_outliers_is_put_where_it_belongs():
     points, random = cloud("fan-rotor", 1500, span=(0.3, 0.8)), np.random.default_rng(3)
     noisy = points + 2e-5 * random.normal(size=points.shape)
     box = noisy.min(axis=0) + np.ptp(noisy, axis=0) * (1.6 * random.random((75, 3)) - 0.3)
-    found = registration(thrown(2)(np.concatenate([noisy, box])), example("fan-rotor"))
-    # first-order displacement of the middle of the blade, with the covariance that is reported; five deviations
-    rates = np.concatenate([np.cross(np.eye(3), points.mean(axis=0)), np.eye(3)])
-    deviation = np.sqrt(np.diag(rates.T @ found.covariance @ rates))
-    error = (found.motion(thrown(2)(points)) - points).mean(axis=0)
-    assert np.all(np.sqrt(error**2) < 5.0 * deviation)
-    assert deviation.max() < 2e-5
-    assert found.rms == pytest.approx(2e-5, rel=0.1)
-    assert 0.94 < found.share < 0.97
+    motion, notes = registration(thrown(2)(np.concatenate([noisy, box])), example("fan-rotor"))
+    # the middle of the blade is found far within the noise of a point
+    error = (motion(thrown(2)(points)) - points).mean(axis=0)
+    assert np.max(np.sqrt(error**2)) < 0.5 * 2e-5
+    assert not notes
 
 
 @pytest.mark.slow
 def test_a_mirrored_blade_is_told_from_the_design():
     points = cloud("radial-turbine", 800) * np.array([1.0, -1.0, 1.0])
-    found = registration(thrown(4)(points), example("radial-turbine"))
-    assert not found.same
-    assert "another blade" in " ".join(found.notes)
+    assert "another blade" in " ".join(registration(thrown(4)(points), example("radial-turbine"))[1])
 
 
 @pytest.mark.slow
 def test_a_blade_of_another_stagger_is_told_from_the_design():
     other = built(example("vki-ls89")).design.changed("stagger", -50.0).build()
     points = np.concatenate([side.grid(np.linspace(0.0, 1.0, 20), np.linspace(0.0, 1.0, 6)) for side in other.sides])
-    found = registration(points.reshape(-1, 3), example("vki-ls89"))
-    assert not found.same
-    assert "another blade" in " ".join(found.notes)
+    assert "another blade" in " ".join(registration(points.reshape(-1, 3), example("vki-ls89"))[1])
 
 
 def test_a_prism_without_its_ends_leaves_the_shift_along_the_span_undetermined():
     points = cloud("vki-ls89", 800, span=(0.3, 0.7))
-    assert registration(thrown(5)(points), example("vki-ls89")).undetermined == ("shift_z",)
+    (note,) = registration(thrown(5)(points), example("vki-ls89"))[1]
+    assert "do not determine shift_z of" in note
 
 
 def test_a_section_is_found_in_its_plane():
@@ -83,7 +74,7 @@ def test_a_section_is_found_in_its_plane():
     points = np.concatenate([curve(u) for curve in design.build().curves.values()])
     c, s = np.cos(2.0), np.sin(2.0)
     away = Motion(rotation=np.array([[c, -s], [s, c]]), translation=np.array([0.3, -0.1]))
-    back = registration(away(points), design).motion
+    back, _ = registration(away(points), design)
     assert np.abs(back(away(points)) - points).max() < 1e-9 * 0.03
 
 

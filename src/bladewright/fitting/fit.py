@@ -31,8 +31,7 @@ from bladewright.fitting.free_parameters import FreeParameters, free_parameters_
 from bladewright.fitting.initial_guess.blade import spans_along_y
 from bladewright.fitting.matching.search import COARSEST_TOLERANCE, Match, Task
 from bladewright.fitting.placing import Matched, PlacedTask, nearest_of, realigned, shown_of
-from bladewright.fitting.registration.axes import axis_motion, found_axes
-from bladewright.fitting.registration.registration import composed, registration
+from bladewright.fitting.registration import axis_motion, composed, found_axes, registration
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import choice
 from bladewright.section.unified import UnifiedSection
@@ -41,8 +40,8 @@ from bladewright.section.unified import UnifiedSection
 def _aligned(points: Reals, start: Design | None, header: DesignHeader) -> tuple[Motion, DesignHeader, tuple[str, ...]]:
     """The motion into the machine's axes, the header with the arrangement that it shows, and notes."""
     if start is not None:
-        registered = registration(points, start)
-        return registered.motion, header, registered.notes
+        motion, notes = registration(points, start)
+        return motion, header, notes
     motion, notes = found_axes(points, arrangement=header.arrangement)
     return motion, replace(header, arrangement="linear"), notes
 

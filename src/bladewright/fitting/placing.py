@@ -21,7 +21,7 @@ from bladewright.fitting.clouds.walls import Walls
 from bladewright.fitting.finishing import Finishing
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching.search import Match, Task, has_systematic_misfit
-from bladewright.fitting.registration.registration import (
+from bladewright.fitting.registration import (
     OTHER_BLADE_NOTE,
     WEAKEST_FREEDOM,
     composed,

@@ -1,0 +1,383 @@
+"""The motion that brings a cloud into the machine's axes: onto a design's blade, about a named axis, or of a prism.
+
+Onto a blade or section it is found by iterative closest points. The starts are the turns of a cube, or a square, that
+lay the cloud's principal axes on the blade's. Each is followed with the nearest of many samples of the blade, first
+point to point (Besl and McKay 1992), then point to plane (Chen and Medioni 1992); the best are followed with true
+footpoints. Every step is one of Gauss and Newton with Tukey's weights (Beaton and Tukey 1974), whose width shrinks to
+what the noise needs (graduated non-convexity, Blake and Zisserman 1987): the few points at the ends, which alone hold a
+prismatic blade along its span, take part before they could be taken for outliers.
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull, cKDTree
+from scipy.spatial.transform import Rotation
+
+from bladewright.blade.design.row_design import Arrangement
+from bladewright.designs import Design
+from bladewright.errors import FitError
+from bladewright.fitting.assessment.result import Motion
+from bladewright.fitting.clouds.thinning import even_subset, random_subset, without_isolated_points
+from bladewright.fitting.matching.footpoints import Side, footpoints_at, nearest_footpoints
+from bladewright.fitting.models.blunt_edges import sides_of
+from bladewright.numerics.robust import TUKEY_WIDTH, median_deviation, tukey_weights
+from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.surface import Surface
+
+GRID = {2: (2000, 1), 3: (241, 61)}
+"""places along and across a side from which samples are chosen, by dimension"""
+SAMPLES = 8000
+"""evenly spread samples, about a hundredth of the blade from each other: as near as true footpoints need to start"""
+LOOKED_AT, SEARCH_POINTS, DECIDING_POINTS = 20_000, 300, 3000
+"""points of the cloud among which isolated ones are told, those that choose among the starts, and those that decide.
+They bound the time: the motion has six unknowns, and of 3000 points its noise is a fiftieth of theirs."""
+FOLLOWED_STARTS, TRIAL_STEPS = 2, 5
+"""starts that are followed with true footpoints, and steps that choose among them"""
+POINT_STEPS, PLANE_STEPS, MOST_STEPS = 6, 24, 60
+"""steps of a start point to point, then point to plane, and of a descent with true footpoints at most"""
+FIRST_WIDTH, SHRINKING = 0.05, 4.0
+"""first width of the weights, of the blade's extent, and the factor by which it shrinks at most in a step"""
+LEAST_WIDTH, LAST_STEP = 1e-8, 1e-12
+"""least width of the weights, to which footpoints are exact, and last step, which is rounding, of the blade's extent"""
+LONGEST_TURN = 0.3
+"""longest turn in a step [rad], within which a turn is about linear"""
+WEAKEST_FREEDOM, LARGEST_DEVIATION = 1e-5, 0.01
+"""singular value, of the largest, below which the points do not determine a degree of freedom, and standard deviation,
+of the blade's extent, above which their noise does not let them"""
+OTHER_BLADE, LEAST_SHARE = 5e-3, 0.7
+"""distance, of the chord, within which points are of this blade: as far as a match may be off where no tolerance is
+asked; and share of the points that must be"""
+OTHER_BLADE_NOTE = "the cloud does not lie on the design's blade"
+"""what a note begins with where the cloud is of another blade"""
+FREEDOMS = {
+    2: ("turn", "shift_x", "shift_y"),
+    3: ("turn_x", "turn_y", "turn_z", "shift_x", "shift_y", "shift_z"),
+}
+"""degrees of freedom by dimension: right-handed turns about the machine's axes, then shifts along them"""
+TURN_AXES = {2: np.eye(3)[2:], 3: np.eye(3)}
+"""(k, 3) axes of the turns by dimension"""
+CUBE = {2: Rotation.create_group("C4"), 3: Rotation.create_group("O")}
+"""turns of a square and a cube, by dimension"""
+
+Contact = tuple[Reals, NDArray[np.intp], Reals]
+"""Where n points touch the blade: (n, d) from the nearest places to the points, the (m,) points of the m directions in
+which they are held there, and these, unit vectors (m, d)"""
+
+
+def registration(points: Reals, design: Design) -> tuple[Motion, tuple[str, ...]]:
+    """The motion of points (n, d) [m] that lie anywhere onto what a design builds, found without a guess, and notes.
+
+    Raises FitError where the points do not have the dimension of the design, or are too few.
+    """
+    built = design.build()
+    sides = sides_of(built)
+    dimension = int(np.real(sides[0].control_points).shape[-1])
+    cloud = np.asarray(points, dtype=np.float64)
+    if cloud.ndim != 2 or cloud.shape[1] != dimension:
+        raise FitError(
+            f"a cloud of shape {cloud.shape} was given for a design in {dimension} dimensions; give (n, {dimension})"
+        )
+    cloud = cloud[np.isfinite(cloud).all(axis=1)]
+    if len(cloud) < 12:
+        raise FitError(f"{len(cloud)} points were given: at least 12 are needed to find where they lie")
+    samples, normals = _samples(sides)
+    extent = float(np.max(np.ptp(samples, axis=0)))
+    few = without_isolated_points(cloud[random_subset(len(cloud), LOOKED_AT)])
+    few = few[even_subset(few, SEARCH_POINTS)]
+
+    def touching(moved: Reals) -> Contact:
+        found = nearest_footpoints(moved, sides)
+        past = np.flatnonzero(np.any(found.beyond != 0.0, axis=1))
+        rows = np.concatenate([np.arange(len(moved)), past])
+        return found.miss, rows, np.concatenate([found.normals, found.beyond[past]])
+
+    def distance(motion: Motion) -> float:
+        distances = nearest_footpoints(motion(few), sides).distances
+        return float(np.mean(np.minimum(distances, FIRST_WIDTH * extent)))
+
+    starts = sorted((_rough(few, samples, normals, start) for start in _starts(few, samples)), key=lambda each: each[0])
+    near = [_descended(few, touching, start, extent, steps=TRIAL_STEPS) for _, start in starts[:FOLLOWED_STARTS]]
+    some = cloud[random_subset(len(cloud), DECIDING_POINTS)]
+    motion = _descended(some, touching, min(near, key=distance), extent)
+    return motion, _notes(motion(some), touching(motion(some)), extent, float(np.real(built.chord)))
+
+
+def _samples(sides: tuple[Side, Side]) -> tuple[Reals, Reals]:
+    """Points (m, d) spread evenly over the sides, and the unit normals there."""
+    found = []
+    for k, side in enumerate(sides):
+        along, across = GRID[3 if isinstance(side, Surface) else 2]
+        u = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, along))) / 2.0
+        u, v = (each.ravel() for each in np.meshgrid(u, np.linspace(0.0, 1.0, across), indexing="ij"))
+        points = side(u, v) if isinstance(side, Surface) else side(u)
+        rows = even_subset(points, SAMPLES // 2)
+        at = footpoints_at(points[rows], sides, np.full(len(rows), k, dtype=np.intp), u[rows], v[rows])
+        found.append((at.points, at.normals))
+    return np.concatenate([points for points, _ in found]), np.concatenate([normals for _, normals in found])
+
+
+def _starts(cloud: Reals, samples: Reals) -> list[Motion]:
+    """All rotations of the cloud's principal axes onto those of the samples, centre on centre."""
+    pivot, centre = np.mean(cloud, axis=0), np.mean(samples, axis=0)
+    axes, goals = (np.linalg.svd(each, full_matrices=False)[2] for each in (cloud - pivot, samples - centre))
+    axes[-1] *= np.sign(np.linalg.det(axes) * np.linalg.det(goals))
+    dimension = cloud.shape[1]
+    turns = CUBE[dimension].as_matrix()[:, :dimension, :dimension]
+    rotations = [goals.T @ turn @ axes for turn in turns]
+    return [Motion(rotation=each, translation=centre - each @ pivot) for each in rotations]
+
+
+def _rough(points: Reals, samples: Reals, normals: Reals, motion: Motion) -> tuple[float, Motion]:
+    """The motion that closest samples lead to, point to point, then point to plane, and the mean distance there."""
+    tree, dimension, every = cKDTree(samples), points.shape[1], np.arange(len(points))
+    extent = float(np.max(np.ptp(samples, axis=0)))
+    spacing = float(np.max(tree.query(samples, k=2)[0]))
+
+    def contact(moved: Reals, *, planes: bool) -> Contact:
+        index = tree.query(moved)[1]
+        if planes:
+            return moved - samples[index], every, normals[index]
+        return moved - samples[index], np.repeat(every, dimension), np.tile(np.eye(dimension), (len(points), 1))
+
+    for planes, steps in ((False, POINT_STEPS), (True, PLANE_STEPS)):
+        for _ in range(steps):
+            motion = composed(_step(motion(points), contact(motion(points), planes=planes), 0.0, extent), motion)
+    miss, _, directions = contact(motion(points), planes=True)
+    distances = _lengths(miss)
+    # between samples only the distance from the tangent plane says how far a point is off
+    aside = np.where(distances > spacing, distances, np.abs(np.sum(directions * miss, axis=1)))
+    return float(np.mean(np.minimum(aside, FIRST_WIDTH * extent))), motion
+
+
+def _descended(
+    points: Reals, contacts: Callable[[Reals], Contact], motion: Motion, extent: float, steps: int = MOST_STEPS
+) -> Motion:
+    """The motion of least robust distances near a first one."""
+    width = FIRST_WIDTH * extent
+    for _ in range(steps):
+        moved = motion(points)
+        contact = contacts(moved)
+        needed = max(_noise_width(contact), LEAST_WIDTH * extent)
+        motion = composed(_step(moved, contact, width, extent), motion)
+        if width <= needed and np.max(np.abs(motion(points) - moved)) < LAST_STEP * extent:
+            break
+        width = max(needed, width / SHRINKING)
+    return motion
+
+
+def _lengths(vectors: Reals) -> Reals:
+    return np.asarray(np.sqrt(np.sum(vectors**2, axis=1)))
+
+
+def _noise_width(contact: Contact) -> float:
+    """Width of the weights that the points' own distances call for."""
+    return TUKEY_WIDTH * median_deviation(_lengths(contact[0]))
+
+
+def _equations(moved: Reals, contact: Contact, width: float, extent: float) -> tuple[Reals, Reals]:
+    """Weighted rows (m, k) of what turns about the middle and shifts, as lengths, do to distances; right sides (m,)."""
+    miss, rows, directions = contact
+    root = np.sqrt(tukey_weights(_lengths(miss), max(width, _noise_width(contact))))[rows]
+    rates = motion_rates(moved, np.mean(moved, axis=0))[rows] * motion_scale(moved.shape[1], extent)
+    return np.einsum("md,mdk->mk", directions, rates) * root[:, None], -np.sum(directions * miss[rows], axis=1) * root
+
+
+def _step(moved: Reals, contact: Contact, width: float, extent: float) -> Motion:
+    """The step of Gauss and Newton, in the degrees of freedom that the points determine."""
+    rows, right = _equations(moved, contact, width, extent)
+    change = motion_scale(moved.shape[1], extent) * np.linalg.lstsq(rows, right, rcond=WEAKEST_FREEDOM)[0]
+    return motion_by(change, np.mean(moved, axis=0))
+
+
+def _notes(moved: Reals, contact: Contact, extent: float, chord: float) -> tuple[str, ...]:
+    """What there is to say where the points do not determine the motion, or are of another blade."""
+    distances = _lengths(contact[0])
+    share, typical = float(np.mean(distances <= OTHER_BLADE * chord)), median_deviation(distances)
+    rows, right = _equations(moved, contact, LEAST_WIDTH * extent, extent)
+    deviation = np.sqrt(np.sum(right**2) / max(1, int(np.count_nonzero(right)) - rows.shape[1]))
+    _, values, across = np.linalg.svd(rows, full_matrices=False)
+    weak = across[values <= max(WEAKEST_FREEDOM * values[0], deviation / (LARGEST_DEVIATION * extent))]
+    undetermined = [name for k, name in enumerate(FREEDOMS[moved.shape[1]]) if np.any(np.abs(weak[:, k]) > 0.1)]
+    notes = []
+    if undetermined:
+        names = ", ".join(undetermined)
+        notes.append(f"the points do not determine {names} of the motion: they stay where the search ended")
+    if share < LEAST_SHARE:
+        notes.append(
+            f"{OTHER_BLADE_NOTE}: {1.0 - share:.0%} of its points are more than {OTHER_BLADE:.1%} of the chord off, "
+            f"and they typically miss it by {typical:.3g} m, {typical / chord:.2%} of the chord; it is another blade, "
+            "a mirrored one, or in another unit"
+        )
+    return tuple(notes)
+
+
+def motion_rates(points: Reals, pivot: Reals) -> Reals:
+    """Rates (n, d, k) of points (n, d) by turns about a pivot and shifts."""
+    count, dimension = points.shape
+    arm = np.pad(points - pivot, ((0, 0), (0, 3 - dimension)))
+    turns = np.cross(TURN_AXES[dimension], arm[:, None])[..., :dimension]
+    shifts = np.broadcast_to(np.eye(dimension), (count, dimension, dimension))
+    return np.concatenate([np.moveaxis(turns, 1, 2), shifts], axis=2)
+
+
+def motion_by(change: Reals, pivot: Reals) -> Motion:
+    """The motion by turns about a pivot (d,), of no more than `LONGEST_TURN`, and shifts (k,)."""
+    dimension = len(pivot)
+    turn = change[:-dimension] @ TURN_AXES[dimension]
+    turn *= min(1.0, LONGEST_TURN / max(float(np.sqrt(turn @ turn)), LAST_STEP))
+    rotation = np.asarray(Rotation.from_rotvec(turn).as_matrix())[:dimension, :dimension]
+    return Motion(rotation=rotation, translation=pivot - rotation @ pivot + change[-dimension:])
+
+
+def motion_scale(dimension: int, extent: float) -> Reals:
+    """Scales (k,) of the degrees of freedom by which all are lengths."""
+    return np.concatenate([np.full(len(TURN_AXES[dimension]), 1.0 / extent), np.ones(dimension)])
+
+
+def composed(second: Motion, first: Motion) -> Motion:
+    """The motion that does `first`, then `second`."""
+    return Motion(rotation=second.rotation @ first.rotation, translation=second(first.translation))
+
+
+AXES_POINTS = 2000
+"""points that are looked at; it bounds the time."""
+PRISM_THICKNESS = 1e-3
+"""thickness of a projection, of the cloud's extent, below which the cloud is a prism: a few times the noise of a
+scan."""
+NORMAL_NEIGHBOURS, CURVE_NEIGHBOURS = 12, 60
+"""nearest points that a plane is laid through, and a parabola of the section, on which many stand above each other:
+with fewer, 16 x 10 points of a stator pass for a prism."""
+STEPS, SETTLED = 12, 1e-8
+"""steps of the least squares at most, and the last turn [rad]"""
+EDGE = 0.1
+"""part of the chord whose thickness is that of an edge"""
+CURES = (
+    "name the axis of rotation (--axis z), give a design of about this blade (--align --start), or move the points "
+    "into the machine's axes, x downstream"
+)
+"""what to do where axes are not found"""
+
+
+def axis_motion(axis: str | Sequence[float], dimension: int) -> Motion:
+    """The turn about the origin of points (n, d) whose axis of rotation has a name or a direction: it becomes x.
+
+    Names are x, y and z, also with a sign. It is the smallest such turn, so that from an axis across z a span along z
+    stays there; the opposite of x is turned about z.
+    """
+    names = "xyz"[:dimension]
+    units = dict(zip(names, np.eye(dimension), strict=True))
+    if isinstance(axis, str):
+        word = axis.strip().lower()
+        direction = units.get(word.lstrip("+-"), np.zeros(dimension)) * (-1.0 if word.startswith("-") else 1.0)
+    else:
+        direction = np.array([float(each) for each in axis])
+    size = float(np.sqrt(np.sum(direction**2)))
+    if direction.shape != (dimension,) or not 0.0 < size < np.inf:
+        raise FitError(
+            f"axis is {axis!r}: the direction of the machine's axis in the points' coordinates is needed, one of "
+            f"{', '.join(names)}, also with a minus before it, or {dimension} numbers that are not all zero"
+        )
+    direction /= size
+    middle = direction + units["x"]
+    if middle @ middle < np.finfo(float).eps:
+        return Motion(rotation=np.diag([-1.0, -1.0, 1.0][:dimension]), translation=np.zeros(dimension))
+    # the reflection across the direction, then the one across the middle
+    first, second = (np.eye(dimension) - 2.0 * np.outer(a, a) / (a @ a) for a in (direction, middle))
+    return Motion(rotation=second @ first, translation=np.zeros(dimension))
+
+
+def found_axes(points: Reals, *, arrangement: Arrangement | None = None) -> tuple[Motion, tuple[str, ...]]:
+    """The motion of points (n, 3) [m] of a linear cascade's blade into the machine's axes, and notes on it.
+
+    A prism is such a blade: its direction is the span z, and its chord line is laid along x. Raises FitError for any
+    other blade, of which the points do not show the axis.
+    """
+    if points.shape[1] != 3:
+        raise FitError(f"axes are found of points in space, and these have {points.shape[1]} coordinates: {CURES}")
+    if arrangement == "annular":
+        raise FitError(f"the machine axis of an annular blade cannot be told from its points alone: {CURES}")
+    cloud = without_isolated_points(points[random_subset(len(points), AXES_POINTS)])
+    span, thickness = prism_of(cloud)
+    limit = PRISM_THICKNESS * float(np.max(np.ptp(cloud, axis=0)))
+    if not thickness <= limit:
+        raise FitError(
+            "the cloud is no prism, whose axes would be found, and the machine axis of another blade cannot be told "
+            f"from its points alone: along the best direction its section is blurred by {thickness:.3g} m, and "
+            f"{limit:.3g} m are allowed; {CURES}"
+        )
+    leading, trailing = (edge @ _across(span) for edge in _chord(cloud @ _across(span).T))
+    x = (trailing - leading) / np.sqrt(np.sum((trailing - leading) ** 2))
+    # the camber bulges towards y, and the span points where y leaves it
+    span = span if np.mean((cloud - leading) @ np.cross(span, x)) > 0.0 else -span
+    rotation = np.stack([x, np.cross(span, x), span])
+    moved = cloud @ rotation.T
+    origin = np.append((rotation @ leading)[:2], np.min(moved[:, 2]))
+    return Motion(rotation=rotation, translation=-origin), (
+        (
+            "the cloud is a prism, taken as a blade of a linear cascade with its span along z; of one in an annular "
+            "row name the axis of rotation"
+        ),
+        (
+            "a prism does not show where the machine axis lies in its section: x is laid along the chord, from the "
+            "thicker edge (leading) to the thinner one, so that stagger is 0 and all angles count from the chord; the "
+            "camber bulges towards +y, the origin is at the leading edge's lower end"
+        ),
+    )
+
+
+def prism_of(points: Reals) -> tuple[Reals, float]:
+    """The direction (3,) along which the projection of points (n, 3) is thinnest, and how thick that is [m]."""
+    near = points[cKDTree(points).query(points, k=NORMAL_NEIGHBOURS)[1]]
+    local = near - near.mean(axis=1, keepdims=True)
+    normals = np.linalg.eigh(np.einsum("nki,nkj->nij", local, local))[1][:, :, 0]
+    # the normals of a prism's sides are perpendicular to its direction
+    starts = np.linalg.eigh(normals.T @ normals)[1].T
+    found = [_thinnest(points, start) for start in starts]
+    return min(found, key=lambda each: each[1])
+
+
+def _thinnest(points: Reals, direction: Reals) -> tuple[Reals, float]:
+    """A direction near a first one, and the distance [m] of the projected points from the curve through neighbours."""
+    rms = np.inf
+    for _ in range(STEPS):
+        frame = _across(direction)
+        flat, height = points @ frame.T, points @ direction
+        near = cKDTree(flat).query(flat, k=CURVE_NEIGHBOURS)[1]
+        local = flat[near] - flat[near].mean(axis=1, keepdims=True)
+        axes = np.linalg.eigh(np.einsum("nki,nkj->nij", local, local))[1]
+        off, along = (np.einsum("nki,ni->nk", local, axes[:, :, k]) for k in (0, 1))
+        # the weights by which a parabola through the neighbours gives its value at the point itself
+        along /= np.max(np.abs(along), axis=1, keepdims=True)
+        terms = np.stack([np.ones_like(along), along, along**2], axis=-1)
+        matrix = np.einsum("nki,nkj->nij", terms, terms)
+        smoothing = np.einsum("nki,nij,nj->nk", terms, np.linalg.pinv(matrix, hermitian=True), terms[:, 0])
+        left = off[:, 0] - np.sum(smoothing * off, axis=1)
+        lift = height - np.sum(smoothing * height[near], axis=1)
+        weights = tukey_weights(left, max(TUKEY_WIDTH * median_deviation(left), np.finfo(float).tiny))
+        root = np.sqrt(weights)
+        step = np.linalg.lstsq(-axes[:, :, 0] * (lift * root)[:, None], -left * root, rcond=1e-9)[0]
+        rms = float(np.sqrt(np.mean(left[weights > 0.0] ** 2)))
+        direction = direction + step @ frame
+        direction /= np.sqrt(np.sum(direction**2))
+        if np.max(np.abs(step)) < SETTLED:
+            break
+    return direction, rms
+
+
+def _across(direction: Reals) -> Reals:
+    """Two unit vectors (2, 3) perpendicular to a direction and to each other."""
+    return np.linalg.svd(direction[None])[2][1:]
+
+
+def _chord(flat: Reals) -> Reals:
+    """Leading and trailing edge (2, 2) of a section: its points that are furthest apart, the thicker end first."""
+    hull = flat[ConvexHull(flat).vertices]
+    square = np.sum((hull[:, None] - hull[None]) ** 2, axis=-1)
+    i, j = np.unravel_index(np.argmax(square), square.shape)
+    one, other = hull[i], hull[j]
+    along = (other - one) / square[i, j]
+    x, y = (flat - one) @ along, (flat - one) @ np.array([-along[1], along[0]])
+    ends = [float(np.ptp(y[near])) if np.any(near) else 0.0 for near in (x < EDGE, x > 1.0 - EDGE)]
+    return np.array([one, other] if ends[0] >= ends[1] else [other, one])

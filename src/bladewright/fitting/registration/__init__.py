@@ -1,1 +1,0 @@
-"""The rigid motion of a cloud that lies anywhere into the machine's axes."""
