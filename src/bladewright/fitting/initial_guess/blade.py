@@ -166,14 +166,11 @@ def spans_along_y(points: Reals) -> bool:
 
 
 def _arrangement_by_axis(points: Reals) -> Arrangement | None:
-    """A blade that reaches the machine axis, or surrounds it, belongs to a cascade; one along theta does not."""
-    y, z = points[:, 1], points[:, 2]
-    radius = np.sqrt(y**2 + z**2)
-    around = np.sort(np.arctan2(y, z))
-    gaps = np.diff(np.concatenate([around, around[:1] + 2.0 * np.pi]))
-    if np.min(radius) < 0.02 * np.max(radius) or np.max(gaps) < np.pi:
+    """A blade that reaches the machine axis belongs to a cascade; one along theta does not."""
+    radius = np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2)
+    if np.min(radius) < 0.02 * np.max(radius):
         return "linear"
-    return "annular" if np.ptp(z) < 0.05 * np.ptp(radius) else None
+    return "annular" if np.ptp(points[:, 2]) < 0.05 * np.ptp(radius) else None
 
 
 def _arrangement_by_rows(points: Reals) -> Arrangement | None:

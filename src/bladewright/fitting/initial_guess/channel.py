@@ -16,6 +16,7 @@ from bladewright.fitting.initial_guess.slices import PlanePoints, Slices, chord_
 from bladewright.fitting.model_selection.structure import INITIAL_BLADES
 from bladewright.numerics.elementary import cross2, cumulative_length
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
+from bladewright.section.laws import law_basis
 
 CONTINUED = 0.5
 """how far, in u, stream lines are continued past the edges (design/first_guesses.md)"""
@@ -245,8 +246,14 @@ def _sliced(machine: Reals, channel: FirstChannel) -> SlicedChannel:
     v = np.clip(v, 0.0, 1.0)
     past = machine[:, :2] - channel.position(u, v)
     extent, length = channel.extents(v)
-    plane = PlanePoints(points=np.stack([channel.abscissa(u, v), machine[:, 2]], axis=-1) / extent[:, None], v=v)
+    # the place around the axis is smooth along the span; in extents, which may differ tenfold, it is not
+    rows, around = law_basis(LAW_COUNT, v), machine[:, 2]
+    place = np.linalg.lstsq(rows, around, rcond=None)[0]
+    plane = PlanePoints(points=np.stack([channel.abscissa(u, v), around - rows @ place], axis=-1) / extent[:, None], v=v)
     slices = slices_of(plane, chord_direction(plane), STATIONS, LAW_COUNT)
+    camber = slices.camber.copy()
+    camber[..., 1] += (law_basis(LAW_COUNT, STATIONS) @ place / channel.extents(STATIONS)[0])[:, None]
+    slices = replace(slices, camber=camber)
     outside = float(np.mean(np.sqrt(np.sum(past**2, axis=-1)) / length)) / float(np.mean(slices.chords))
     return SlicedChannel(channel=channel, plane=plane, slices=slices, outside=outside)
 
