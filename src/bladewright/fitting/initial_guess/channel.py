@@ -249,7 +249,9 @@ def _sliced(machine: Reals, channel: FirstChannel) -> SlicedChannel:
     # the place around the axis is smooth along the span; in extents, which may differ tenfold, it is not
     rows, around = law_basis(LAW_COUNT, v), machine[:, 2]
     place = np.linalg.lstsq(rows, around, rcond=None)[0]
-    plane = PlanePoints(points=np.stack([channel.abscissa(u, v), around - rows @ place], axis=-1) / extent[:, None], v=v)
+    plane = PlanePoints(
+        points=np.stack([channel.abscissa(u, v), around - rows @ place], axis=-1) / extent[:, None], v=v
+    )
     slices = slices_of(plane, chord_direction(plane), STATIONS, LAW_COUNT)
     camber = slices.camber.copy()
     camber[..., 1] += (law_basis(LAW_COUNT, STATIONS) @ place / channel.extents(STATIONS)[0])[:, None]
