@@ -1,19 +1,20 @@
-"""A NURBS curve or surface as a function of its unknowns."""
+"""A NURBS curve or surface as a function of its unknowns, and its match with knots where they are needed."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import block_diag, null_space
+from scipy.linalg import null_space
 from scipy.sparse import csr_array
 
 from bladewright.errors import FitError, GeometryError
-from bladewright.fitting.freeform.search import STIFFNESSES, Shape
+from bladewright.fitting.freeform.search import STIFFNESSES, Options, Shape, ShapeMatch, matched_by_stages, placed
 from bladewright.numerics.quadrature import panels
 from bladewright.nurbs.basis import Reals, basis, breaks, checked_knots, uniform_knots
 from bladewright.nurbs.blossom import knot_change
@@ -26,12 +27,14 @@ from bladewright.nurbs.surface import Surface
 TENSION = 0.01
 """weight of squared first derivatives, of that of squared second ones: with none, surfaces swing twice as far past
 their points, with ten times as much their corners are cut (design/freeform.md)"""
-WEIGHT_REGULARISATION = 1e-10
-"""cost of a unit of a weight's logarithm, in extents of the points: it holds weights without effect, and is rounding
-beside distances (design/freeform.md)"""
 LAST_STEP = 1e-10
 """last step of a descent, in the parameters of a patch: distances of exact points are exact to it
 (design/freeform.md)"""
+KNOT_ROUNDS = 25
+"""times that knots are added at most; it bounds the time."""
+NOISE_RATIO = 1.25
+"""root mean square of a knot span's distances, of the noise, up to which they are noise: three standard errors of the
+root mean square of 70 distances (design/freeform.md)"""
 DIRECTIONS: tuple[Direction, Direction] = ("u", "v")
 """names of the directions of a surface"""
 
@@ -207,20 +210,22 @@ class Net(Shape):
         return csr_array(scaled * (1.0 / scaled.sum(axis=1))[:, None])
 
     def slopes(self, parameters: Reals, directions: Reals) -> Reals:
-        """Derivatives (r, n) by the unknowns of places at held parameters (r, k), along directions (r, d)."""
+        """Derivatives (m r, n) by the unknowns of places at held parameters (m, k), along directions (m, r, d)."""
         matrix = self.basis(parameters).toarray()
-        moved = (matrix[:, self.free, None] * directions[:, None]).reshape(len(matrix), -1)
+        moved = matrix[:, None, self.free, None] * directions[:, :, None]
+        moved = moved.reshape(matrix.shape[0] * directions.shape[1], -1)
         if not self.weighted:
             return moved
         # dC / d log w_i = R_i (P_i - C)
-        away = directions @ self.points.T - np.sum(directions * (matrix @ self.points), axis=-1, keepdims=True)
-        return np.concatenate([moved, (matrix * away) @ self.gauge], axis=1)
+        away = matrix[..., None] * (self.points - (matrix @ self.points)[:, None])
+        turned = np.einsum("mrd,mnd->mrn", directions, away).reshape(len(moved), -1)
+        return np.concatenate([moved, turned @ self.gauge], axis=1)
 
     def bending(self, stiffness: float) -> tuple[Reals, Reals]:
         """Residuals (b,) whose squares are the bending, times its weight, and their derivatives (b, n)."""
-        root, logs = np.sqrt(stiffness) * self.bending_root, WEIGHT_REGULARISATION * self.gauge.T
-        slopes = block_diag(np.kron(root[:, self.free], np.eye(self.points.shape[1])), logs @ self.gauge)
-        return np.concatenate([(root @ self.points).ravel(), logs @ self.log_weights]), slopes
+        root = np.sqrt(stiffness) * self.bending_root
+        slopes = np.kron(root[:, self.free], np.eye(self.points.shape[1]))
+        return (root @ self.points).ravel(), np.pad(slopes, ((0, 0), (0, self.gauge.shape[1])))
 
     def through(self, points: Reals, shares: Reals) -> Net:
         """The net nearest to points (m, d) at shares (m, k) of the domain, and a little stiff."""
@@ -304,3 +309,59 @@ def _products(knots: Reals, degree: int) -> list[Reals]:
     at, weight = panels(breaks(knots), degree + 1)
     orders = [basis(knots, degree, at, order) for order in range(3)]
     return [np.asarray(values.T @ (weight[:, None] * values)) for values in orders]
+
+
+def matched_within(net: Net, points: Reals, options: Options, *, warm: bool) -> tuple[ShapeMatch[Net], tuple[str, ...]]:
+    """The match within the largest distance that is asked for, and a note why it is not reached."""
+    unknowns = int(net.free.sum()) * (points.shape[1] if len(net.knots) == 1 else 1)
+    unknowns += len(net.points) - 1 if options.weights_free else 0
+    rows = len(np.unique(points, axis=0)) * (points.shape[1] - len(net.knots))
+    if unknowns > rows:
+        counts = " x ".join(str(count) for count in net.counts)
+        raise FitError(
+            f"{len(points)} points, which give {rows} distances, were to determine {unknowns} unknowns of {counts} "
+            "control points: take fewer control points, fixed weights, or more points"
+        )
+    match = matched_by_stages(placed(net, points), options, () if warm else STIFFNESSES)
+    limit = np.inf if options.tolerance is None else options.tolerance / options.extent
+    for _ in range(KNOT_ROUNDS):
+        if match.largest <= limit:
+            return match, ()
+        finer, reason = _finer(match, limit)
+        if finer is None:
+            reason = reason or f"noise of about {match.noise * options.extent:.3g} stops further knots"
+            break
+        options.report(f"{len(finer.points)} control points")
+        match = matched_by_stages(replace(match, shape=finer, weights=np.ones(len(points))), options, ())
+    else:
+        reason = f"{KNOT_ROUNDS} rounds of knots do not reach it"
+    far = match.largest * options.extent
+    return match, (f"the largest distance is {far:.3g} where {options.tolerance:.3g} was asked for: {reason}",)
+
+
+def _finer(match: ShapeMatch[Net], limit: float) -> tuple[Net | None, str]:
+    """The net with a knot in the middle of each span that is too far off, or None and the reason where it is not noise.
+
+    Of a surface, along the direction of which each new control point is predicted to gain more.
+    """
+    found: list[tuple[float, Net]] = []
+    reason = ""
+    square = match.distances**2
+    for direction, own in enumerate(match.shape.knots):
+        at, knots = match.parameters[:, direction], []
+        for low, high in pairwise(breaks(own)):
+            rows = match.inliers & (at >= low) & (at <= high)
+            above = square[rows].sum() > rows.sum() * match.codimension * (NOISE_RATIO * match.noise) ** 2
+            if above and square[rows].max() > limit**2:
+                knots.append(0.5 * (low + high))
+        if not knots:
+            continue
+        finer = match.shape.refined(knots, direction)
+        if 2 * len(finer.points) > len(at):
+            reason = "the points are too few for further knots"
+            continue
+        trial = replace(match, shape=finer)
+        step = np.linalg.lstsq(trial.jacobian, trial.residuals, rcond=1e-6)[0]
+        gain = np.sum(trial.residuals**2) - np.sum((trial.residuals - trial.jacobian @ step) ** 2)
+        found.append((float(gain) / (len(finer.points) - len(match.shape.points)), finer))
+    return max(found, key=lambda each: each[0])[1] if found else None, reason

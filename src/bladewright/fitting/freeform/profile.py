@@ -126,11 +126,11 @@ class CamberThickness(Shape):
         return place, tangent[:, None], parameters**2 < 1.0
 
     def slopes(self, parameters: Reals, directions: Reals) -> Reals:
-        """Derivatives (r, n) by the unknowns of places at held parameters (r, 1), along directions (r, 2)."""
+        """Derivatives (m r, n) by the unknowns of places at held parameters (m, 1), along directions (m, r, 2)."""
         u, at = parameters[:, 0], self.unknowns
         near = self._sites(u)
         columns = [self.changed(at + 1j * STEP * each)(u, near).imag / STEP for each in np.eye(len(at))]
-        return np.stack([np.sum(column * directions, axis=-1) for column in columns], axis=-1)
+        return np.einsum("nmd,mrd->mrn", columns, directions).reshape(-1, len(at))
 
     def bending(self, stiffness: float) -> tuple[Reals, Reals]:
         """Residuals (b,) whose squares are the bending and the weights' logarithms, times its weight.

@@ -2,8 +2,7 @@
 
 A shape is what curves, surfaces and profiles are here: a vector of unknowns, the nearest places of points on it, and
 what the unknowns do to places at held parameters. A place that is free to move along the shape takes no part of a miss
-along its tangents, so that the derivative of a distance is that of the place along the miss (tangent distance
-minimisation: Wang, Pottmann and Liu 2006).
+along its tangents (tangent distance minimisation: Wang, Pottmann and Liu 2006).
 """
 
 from __future__ import annotations
@@ -18,36 +17,22 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from bladewright.numerics.elementary import turned_left
 from bladewright.numerics.least_squares import ConstrainedProblem, constrained_minimum
 from bladewright.numerics.robust import TUKEY_WIDTH, median_deviation, tukey_weights
 from bladewright.nurbs.basis import Reals
 
 STIFFNESSES = (1e-4, 1e-6, 1e-8, 1e-10)
 """weights of the bending, in extents of the points squared, in turn (design/freeform.md)"""
-STIFFNESS_COST = 1.002
-"""rise of the root mean square that a stiffness may cost: a hundredth of what noise of 100 points leaves open
-(design/freeform.md)"""
-LAST, ROUGH = (100, 1e-5), (20, 1e-3)
+LAST, ROUGH = (200, 1e-5), (20, 1e-3)
 """evaluations at most and predicted relative reduction of the cost at which a descent ends: a last one, whose root mean
 square is then within 0.005 % of what the next step would leave, and one on the way (design/freeform.md)"""
 OUTLYING_NOISE = 4.5
 """standard deviations of the noise from which a point is an outlier: one good point in 150,000 is dropped
 (design/freeform.md)"""
-FIRST_WIDTH = 0.3
-"""first width of Tukey's weights, of the extent. It is halved down to what the noise needs, while the shape softens
-(graduated non-convexity: Blake and Zisserman 1987): with the width of the noise at once, the ends of a shape are taken
-for outliers before it reaches them (design/freeform.md)."""
-WIDTHS = 20
-"""widths at most: the last is a millionth of the first."""
+REWEIGHTINGS = 5
+"""times that weights are found anew, of least distances and of Tukey's each (design/freeform.md)"""
 EXACT = 1e-10
 """distance, of the extent, that is rounding of the places (design/freeform.md)"""
-LARGEST_UNKNOWN = 30.0
-"""magnitude of an unknown: control points stand within a few extents of the points, and a weight of e^30 is all that
-counts near it (design/freeform.md). What begins further off may go twice as far."""
-SHORTEST_COLUMN = 1e-4
-"""length of a column of the Jacobian, of the longest, below which its unknown is scaled no further: its step is left to
-the damping (design/freeform.md)"""
 DETERMINED = 1e-6
 """singular value, of the largest, above which the points determine its direction: what is less changes the cost by less
 than rounding does (design/freeform.md)"""
@@ -80,7 +65,7 @@ class Shape(ABC):
 
     @abstractmethod
     def slopes(self, parameters: Reals, directions: Reals) -> Reals:
-        """Derivatives (r, n) by the unknowns of places at held parameters (r, k), along directions (r, d)."""
+        """Derivatives (m r, n) by the unknowns of places at held parameters (m, k), along directions (m, r, d)."""
 
     @abstractmethod
     def bending(self, stiffness: float) -> tuple[Reals, Reals]:
@@ -142,59 +127,28 @@ class ShapeMatch(Generic[S]):
         return self.weights > 0.0
 
     @property
-    def rms(self) -> float:
-        """Root mean square of the distances."""
-        return float(np.sqrt(np.average(self.distances**2, weights=self.weights)))
-
-    @property
     def largest(self) -> float:
         """Largest distance of an inlier."""
         return float(self.distances[self.inliers].max())
 
-    @cached_property
-    def _rows(self) -> tuple[NDArray[np.intp], Reals, Reals]:
-        """For each residual (r,) its point, its miss, and the direction (r, d) along which that counts.
-
-        Where a place is free along tangents that leave one normal, that is the direction of the miss, on the side of
-        the normal; else every axis, less what lies along the tangents that it is free along.
-        """
-        _, tangents, free = self._touching
-        dimension = self.misses.shape[1]
-        one = np.flatnonzero(free.all(axis=1) & (tangents.shape[1] == dimension - 1) & self.inliers)
-        rest = np.setdiff1d(np.flatnonzero(self.inliers), one)
-        misses, directions = np.zeros(0), np.zeros((0, dimension))
-        if len(one):
-            side = turned_left(tangents[one, 0]) if dimension == 2 else np.cross(tangents[one, 0], tangents[one, 1])
-            sign = np.where(np.sum(side * self.misses[one], axis=-1) < 0.0, -1.0, 1.0)
-            misses = sign * self.distances[one]
-            found = np.where((self.distances[one] > EXACT)[:, None], sign[:, None] * self.misses[one], side)
-            directions = found / np.maximum(np.sqrt(np.sum(found**2, axis=-1)), 1e-300)[:, None]
-        moving = np.swapaxes(np.where(free[rest, :, None], tangents[rest], 0.0), 1, 2)
-        across = np.eye(dimension) - moving @ np.linalg.pinv(moving)
-        return (
-            np.concatenate([one, np.repeat(rest, dimension)]),
-            np.concatenate([misses, self.misses[rest].ravel()]),
-            np.concatenate([directions, across.reshape(-1, dimension)]),
-        )
-
-    @property
-    def residuals(self) -> Reals:
-        """(r,) whose squares sum to the cost of the distances."""
-        rows, misses, _ = self._rows
-        return self._factors[rows] * misses
-
-    @cached_property
-    def jacobian(self) -> Reals:
-        """(r, n) derivatives of the residuals by the unknowns."""
-        rows, _, directions = self._rows
-        if self.power != 2.0:
-            unit = self.misses[rows] / np.maximum(self.distances[rows], EXACT)[:, None]
-            directions = directions + (0.5 * self.power - 1.0) * unit * np.sum(unit * directions, axis=-1)[:, None]
-        return self.shape.slopes(self.parameters[rows], self._factors[rows, None] * directions)
-
     @property
     def _factors(self) -> Reals:
         return np.sqrt(self.weights) * (self.distances / self.scale) ** (0.5 * self.power - 1.0)
+
+    @property
+    def residuals(self) -> Reals:
+        """(m d,) whose squares sum to the cost of the distances."""
+        return np.asarray((self._factors[:, None] * self.misses).ravel())
+
+    @cached_property
+    def jacobian(self) -> Reals:
+        """(m d, n) derivatives of the residuals by the unknowns, less what lies along tangents that a place follows."""
+        _, tangents, free = self._touching
+        moving = np.swapaxes(np.where(free[..., None], tangents, 0.0), 1, 2)
+        across = np.eye(self.points.shape[1]) - moving @ np.linalg.pinv(moving)
+        unit = (self.misses / np.maximum(self.distances, EXACT)[:, None])[:, :, None]
+        across = across + (0.5 * self.power - 1.0) * unit @ (np.swapaxes(unit, 1, 2) @ across)
+        return self.shape.slopes(self.parameters, self._factors[:, None, None] * across)
 
     @cached_property
     def singular_values(self) -> Reals:
@@ -229,29 +183,23 @@ class ShapeMatch(Generic[S]):
 
 
 class Problem(ConstrainedProblem, Generic[S]):
-    """The residuals of a shape's distances and bending; it keeps the places of the unknowns that were accepted.
-
-    Unknowns are scaled by the columns of the first Jacobian (More 1978).
-    """
+    """The residuals of a shape's distances and bending; places follow from those of the unknowns accepted last."""
 
     def __init__(self, match: ShapeMatch[S], stiffness: float) -> None:
         self.accepted = self.tried = match
         self.stiffness = stiffness * float(match.weights.sum())
         self.evaluations = 0
-        lengths = np.sqrt(np.sum(match.jacobian**2, axis=0))
-        self.sizes = 1.0 / np.maximum(lengths, SHORTEST_COLUMN * lengths.max())
-        self.z = self.start = match.shape.unknowns / self.sizes
+        self.z = self.start = match.shape.unknowns
 
     @property
     def bounds(self) -> tuple[Reals, Reals]:
-        every = np.maximum(LARGEST_UNKNOWN / self.sizes, 2.0 * np.abs(self.start))
+        every = np.full(len(self.start), np.inf)
         return -every, every
 
     def at(self, z: Reals) -> ShapeMatch[S]:
-        """The shape at scaled unknowns (n,), with its nearest places."""
+        """The shape at unknowns (n,), with its nearest places."""
         if not np.array_equal(z, self.z):
-            shape = self.accepted.shape.changed(z * self.sizes)
-            self.z, self.tried = z.copy(), _placed_on(shape, self.accepted, self.accepted.parameters)
+            self.z, self.tried = z.copy(), _placed_on(self.accepted.shape.changed(z), self.accepted, follow=True)
         return self.tried
 
     def values(self, z: Reals) -> tuple[Reals, Reals]:
@@ -262,7 +210,7 @@ class Problem(ConstrainedProblem, Generic[S]):
     def derivatives(self, z: Reals) -> tuple[Reals, Reals]:
         self.accepted = self.at(z)
         slopes = np.concatenate([self.accepted.jacobian, self.accepted.shape.bending(self.stiffness)[1]])
-        return slopes * self.sizes, np.zeros((0, len(z)))
+        return slopes, np.zeros((0, len(z)))
 
 
 def placed(shape: S, points: Reals, weights: Reals | None = None) -> ShapeMatch[S]:
@@ -271,8 +219,9 @@ def placed(shape: S, points: Reals, weights: Reals | None = None) -> ShapeMatch[
     return ShapeMatch(shape=shape, points=points, weights=weights, parameters=shape.nearest(points))
 
 
-def _placed_on(shape: S, match: ShapeMatch[S], near: Reals | None = None) -> ShapeMatch[S]:
-    return replace(match, shape=shape, parameters=shape.nearest(match.points, near))
+def _placed_on(shape: S, match: ShapeMatch[S], *, follow: bool) -> ShapeMatch[S]:
+    parameters = shape.nearest(match.points, match.parameters if follow else None)
+    return replace(match, shape=shape, parameters=parameters)
 
 
 def matched(match: ShapeMatch[S], stiffness: float, end: tuple[int, float] = LAST) -> ShapeMatch[S]:
@@ -285,7 +234,7 @@ def matched(match: ShapeMatch[S], stiffness: float, end: tuple[int, float] = LAS
     problem, (steps, reduction) = Problem(match, stiffness), end
     found = constrained_minimum(problem, problem.start, steps=steps, min_reduction=reduction, accelerated=False)
     match = problem.at(found.z)
-    everywhere = _placed_on(match.shape, match)
+    everywhere = _placed_on(match.shape, match, follow=False)
     nearer = everywhere.distances < match.distances
     return replace(
         match,
@@ -298,20 +247,14 @@ def matched(match: ShapeMatch[S], stiffness: float, end: tuple[int, float] = LAS
 def matched_by_stages(
     match: ShapeMatch[S], options: Options, stiffnesses: tuple[float, ...] = STIFFNESSES
 ) -> ShapeMatch[S]:
-    """The match of a shape to points, with the largest stiffness that costs nothing to speak of."""
+    """The match of a shape to points while it softens, then with free weights, then with another power."""
     if options.robust:
-        match = _without_outliers(match, options, stiffnesses)
-    tried = []
+        options.report("without outliers")
+        match = _without_outliers(match, stiffnesses)
     for stiffness in stiffnesses:
         options.report(f"{len(match.shape.unknowns)} unknowns, stiffness {stiffness:g}")
         match = matched(match, stiffness, ROUGH)
-        tried.append((stiffness, match))
     match = matched(match, _softest(match))
-    enough = STIFFNESS_COST * max(match.rms, EXACT)
-    for stiffness, each in tried:
-        if each.rms <= enough:
-            match = matched(replace(each, evaluations=match.evaluations), stiffness)
-            break
     if options.weights_free:
         options.report("free weights")
         match = replace(match, shape=match.shape.freed)
@@ -328,17 +271,18 @@ def _softest(match: ShapeMatch[S]) -> float:
     return 0.0 if match.rank == len(match.shape.unknowns) else STIFFNESSES[-1]
 
 
-def _without_outliers(match: ShapeMatch[S], options: Options, stiffnesses: tuple[float, ...]) -> ShapeMatch[S]:
-    """The match in which the points that are further away than noise explains have no weight."""
-    weights, width = match.weights, FIRST_WIDTH
-    for stiffness in (*stiffnesses[:2], *STIFFNESSES[2:3] * WIDTHS):
-        least = max(TUKEY_WIDTH * median_deviation(match.distances), EXACT)
-        width = max(width, least)
-        options.report(f"without outliers, width {width:.2g}")
-        weighed = weights * tukey_weights(match.distances, width)
-        match = matched(replace(match, weights=weighed), stiffness, ROUGH)
-        if width <= least and stiffness == STIFFNESSES[2]:
-            break
-        width *= 0.5
+def _without_outliers(match: ShapeMatch[S], stiffnesses: tuple[float, ...]) -> ShapeMatch[S]:
+    """The match in which points further away than noise explains have no weight.
+
+    Iteratively reweighted least squares: of least distances, which leave no part of the points behind, then with
+    Tukey's weights (Holland and Welsch 1977).
+    """
+    soft = STIFFNESSES[2]
+    for stiffness in (*stiffnesses[:2], *[soft] * REWEIGHTINGS):
+        spread = max(median_deviation(match.distances), EXACT)
+        match = matched(replace(match, weights=spread / np.maximum(match.distances, spread)), stiffness, ROUGH)
+    for _ in range(REWEIGHTINGS):
+        spread = max(median_deviation(match.distances), EXACT)
+        match = matched(replace(match, weights=tukey_weights(match.distances, TUKEY_WIDTH * spread)), soft, ROUGH)
     inliers = match.distances <= max(OUTLYING_NOISE * median_deviation(match.distances), EXACT)
-    return replace(match, weights=weights * inliers)
+    return replace(match, weights=inliers.astype(np.float64))

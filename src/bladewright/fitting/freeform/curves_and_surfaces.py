@@ -1,0 +1,280 @@
+"""NURBS curves of any dimension, and surfaces in space, fitted to points."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Literal, final
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.sparse.csgraph import dijkstra, minimum_spanning_tree
+from scipy.spatial import ConvexHull, cKDTree
+from scipy.spatial.distance import cdist
+
+from bladewright.errors import FitError, GeometryError
+from bladewright.fitting.clouds.thinning import random_subset
+from bladewright.fitting.freeform.fits import (
+    FreeformFit,
+    Unit,
+    checked_ends,
+    checked_options,
+    checked_points,
+    figures_of,
+)
+from bladewright.fitting.freeform.net import DIRECTIONS, empty_net, matched_within, net_of
+from bladewright.numerics.elementary import cumulative_length
+from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.closest import Descents
+from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.domain import extended, reparametrised
+from bladewright.nurbs.surface import Surface
+
+GRID_CELLS = 150
+"""cells along the extent of the points in which neighbours become one, so that noise does not fold the path
+(design/freeform.md)"""
+MOST_CELLS = 1500
+"""cells of which all distances are compared; it bounds time and memory."""
+IN_ORDER_SHARE = 0.5
+"""share of points whose nearest point is next to them in the list, from which the list is an order: a list in no order
+has next to none."""
+MARGIN = 0.05
+"""length, of the domain, by which the surface is continued past its edges while it moves (design/freeform.md)"""
+HELD_BY_BOUNDARY: dict[str, Literal["none", "corners", "boundary"]] = {
+    "free": "none",
+    "corners": "corners",
+    "fixed": "boundary",
+}
+"""control points that a boundary holds"""
+ON_A_LINE = 1e-9
+"""second extent of the points, of the first, below which they lie on a line."""
+
+
+@final
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class CurveFit(FreeformFit):
+    """A curve fitted to n points."""
+
+    curve: Curve
+    u: Reals
+    """(n,) parameters of the nearest places"""
+
+
+def fit_curve(
+    points: ArrayLike,
+    *,
+    degree: int = 3,
+    control_points: int = 6,
+    knots: ArrayLike | None = None,
+    weights: Literal["fixed", "free"] | ArrayLike = "fixed",
+    ends: Literal["fixed", "free"] | tuple[ArrayLike, ArrayLike] = "fixed",
+    closed: bool = False,
+    power: float = 2.0,
+    start: Curve | None = None,
+    tolerance: float | None = None,
+    robust: bool = False,
+    progress: Callable[[str], None] | None = None,
+) -> CurveFit:
+    """The NURBS curve from which the mean `power` of the true distances of points (n, d) is least.
+
+    Points come in any order and dimension. A list that is in order is taken as it is; otherwise the order is the
+    longest path of the minimum spanning tree, which needs a curve that keeps away from itself by more than its points
+    are apart; where it does not, give `start`, whose degree, knots, control points and weights are then the first ones.
+
+    `knots` are uniform by default; those of a closed curve are the n + 1 distinct ones of a period. `weights` are one,
+    (n,) given ones, or `free`; free ones are positive, and the mean of their logarithms is zero (without inner knots
+    their logarithms have no linear trend either), which leaves out what changes no shape. `ends` of an open curve are
+    `fixed` at the first and the last point along it, `free` (the ends are matched to these points as others to their
+    nearest places), or two points. `power` 2 is least squares, 4 the objective of the source. Where the points leave
+    control points open, the bending decides. With `tolerance` (in the unit of the points) knots are added where
+    the deviation is until no inlier is further away; notes say where noise stops it. `robust` finds outliers and leaves
+    them out.
+
+    Raises FitError where points are too few, not finite or all the same, or a choice is unknown. Source: the objective
+    and its 'true distance by Newton' of the freeform NURBS blading paper, section 4.1, here with exact derivatives (a
+    point is linear in the control points; at its nearest place the distance does not change with the parameter) and
+    Levenberg-Marquardt steps in place of finite differences.
+    """
+    given = checked_points(points, "a curve")
+    unit = Unit(given)
+    pair, scaled = checked_ends(ends, unit), unit.scaled(given)
+    options = checked_options(
+        weights=weights, power=power, robust=robust, tolerance=tolerance, extent=unit.extent, progress=progress
+    )
+    if start is None:
+        shares = sites_along(scaled, closed=closed)
+        own = None if knots is None else (knots,)
+        net = empty_net((degree,), (control_points,), own, weights, scaled.shape[1], closed=closed)
+        net = net.through(scaled, shares[:, None])
+    else:
+        net = net_of(replace(start, control_points=unit.scaled(start.control_points)), closed=closed)
+        shares = net.nearest(scaled)[:, 0]
+    if not closed:
+        outermost = int(np.argmin(shares)), int(np.argmax(shares))
+        if isinstance(ends, str) and ends == "free":
+            net = replace(net, ends=outermost)
+        else:
+            first, last = scaled[list(outermost)] if pair is None else pair
+            net = replace(net, held="corners", points=np.stack([first, *net.points[1:-1], last]))
+    match, notes = matched_within(net, scaled, options, warm=start is not None)
+    curve = match.shape.shape
+    assert isinstance(curve, Curve)  # noqa: S101 - one direction
+    curve = replace(curve, control_points=unit.restored(curve.control_points))
+    figures = figures_of(match, unit.extent, *notes)
+    return CurveFit(curve=curve, u=match.parameters[:, 0], tolerance=tolerance, **figures)
+
+
+def sites_along(points: Reals, *, closed: bool) -> Reals:
+    """Rough places (n,) in [0, 1] of points (n, d) along a curve, by the length of a path through them.
+
+    The path is the list of points where that is an order already. Otherwise it is the longest one in the minimum
+    spanning tree of the points, thinned to a grid: right where the curve keeps away from itself by more than its
+    points are apart. A closed curve is opened at the widest gap.
+    """
+    if _in_order(points):
+        sites = cumulative_length(np.concatenate([points, points[:1]]) if closed else points)
+        return np.asarray(sites[: len(points)] / sites[-1])
+    path = _tree_path(points)
+    # the outermost points lie past the path's ends, which are means of cells
+    path = np.concatenate(
+        [path, path[:1]] if closed else [2.0 * path[:1] - path[1:2], path, 2.0 * path[-1:] - path[-2:-1]]
+    )
+    ends = cumulative_length(path)
+    line = Curve(control_points=path, knots=np.concatenate([ends[:1], ends, ends[-1:]]), degree=1)
+    sites = Descents((line,)).nearest(points).u
+    low, high = (0.0, ends[-1]) if closed else (sites.min(), sites.max())
+    return np.asarray((sites - low) / (high - low))
+
+
+def _in_order(points: Reals) -> bool:
+    nearest, steps = cKDTree(points).query(points, k=2)[0][:, 1], np.diff(cumulative_length(points))
+    beside = np.minimum(np.append(steps, np.inf), np.append(np.inf, steps))
+    return bool(np.mean(beside <= nearest * (1.0 + 1e-9)) >= IN_ORDER_SHARE)
+
+
+def _tree_path(points: Reals) -> Reals:
+    cells = np.floor((points - points.min(axis=0)) / (np.ptp(points, axis=0).max() / GRID_CELLS)).astype(np.int64)
+    _, cell = np.unique(cells, axis=0, return_inverse=True)
+    centres = np.stack([np.bincount(cell, weights=column) / np.bincount(cell) for column in points.T], axis=-1)
+    centres = centres[random_subset(len(centres), MOST_CELLS)]
+    tree = minimum_spanning_tree(cdist(centres, centres))
+    first = int(np.argmax(dijkstra(tree, directed=False, indices=0)))
+    distances, before = dijkstra(tree, directed=False, indices=first, return_predecessors=True)
+    path = [int(np.argmax(distances))]
+    while path[-1] != first:
+        path.append(int(before[path[-1]]))
+    return np.asarray(centres[path[::-1]])
+
+
+@final
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class SurfaceFit(FreeformFit):
+    """A surface fitted to n points."""
+
+    surface: Surface
+    u: Reals
+    """(n,) parameters of the nearest places"""
+    v: Reals
+    """(n,)"""
+
+
+def fit_surface(
+    points: ArrayLike,
+    *,
+    degrees: tuple[int, int] = (3, 3),
+    control_points: tuple[int, int] = (6, 6),
+    knots: tuple[ArrayLike, ArrayLike] | None = None,
+    weights: Literal["fixed", "free"] | ArrayLike = "fixed",
+    boundary: Literal["free", "corners", "fixed"] = "free",
+    power: float = 2.0,
+    start: Surface | None = None,
+    tolerance: float | None = None,
+    robust: bool = False,
+    progress: Callable[[str], None] | None = None,
+) -> SurfaceFit:
+    """The NURBS surface from which the mean `power` of the true distances of scattered points (n, 3) is least.
+
+    The points are those of a roughly rectangular patch that can be seen whole from one direction: their first
+    parameters are those of the smallest rectangle around them in their principal plane, u along its longer side. For
+    others give `start`, whose degrees, knots, control points and weights are then the first ones.
+
+    `weights` are one, (n_u, n_v) given ones, or `free` ones, whose logarithms have no mean (and no trend along a
+    direction without inner knots). `boundary` is `free`, or the `corners` are held at four of the points (at those of
+    `start`), or all outer control points are `fixed` at those of `start`. Where the points leave control points open,
+    the bending of the surface decides; `rank` says how many directions the points determine. With `tolerance` knots are
+    added along u or v, whichever gains more for a control point, until no inlier is further away; notes say where noise
+    stops it. The other arguments are those of `fit_curve`.
+
+    Raises FitError where points are too few, not finite or on a line, or a choice is unknown. Source: as of
+    `fit_curve`; the bending is that of a thin plate under tension (Franke 1985) in the surface's parameters.
+    """
+    given = checked_points(points, "a surface", (3,))
+    if boundary not in HELD_BY_BOUNDARY:
+        raise FitError(f"boundary {boundary!r} is unknown: `free`, `corners`, or `fixed` at that of `start`")
+    if boundary == "fixed" and start is None:
+        raise FitError("a fixed boundary was asked for without `start`: give the surface whose boundary is to stay")
+    if {len(degrees), len(control_points), 2 if knots is None else len(knots)} != {2}:
+        raise FitError(
+            "a surface has two degrees, two numbers of control points, and two arrays of knots: one for u and v"
+        )
+    unit = Unit(given)
+    scaled = unit.scaled(given)
+    options = checked_options(
+        weights=weights, power=power, robust=robust, tolerance=tolerance, extent=unit.extent, progress=progress
+    )
+    if start is None:
+        shares = _rectangle(scaled)
+        net = empty_net(degrees, control_points, knots, weights, 3).through(scaled, shares)
+        if boundary == "corners":
+            corners = [np.argmin(np.sum((shares - corner) ** 2, axis=1)) for corner in np.ndindex(2, 2)]
+            net.points[~replace(net, held="corners").free] = scaled[corners]
+    else:
+        net = net_of(replace(start, control_points=unit.scaled(start.control_points)))
+    low, high = net.domain
+    if boundary == "free":
+        # an edge that moves inwards past a point is a wall for the descent: hundreds of steps where a dozen are enough
+        try:
+            net = net_of(_over(net.shape, low - MARGIN * (high - low), high + MARGIN * (high - low)))
+        except GeometryError:
+            options.report("weights that fall towards an edge would not stay positive past it")
+    net = replace(net, held=HELD_BY_BOUNDARY[boundary])
+    match, notes = matched_within(net, scaled, options, warm=start is not None)
+    surface, parameters = match.shape.shape, match.parameters
+    if boundary == "free":
+        first, last = np.min(parameters, axis=0), np.max(parameters, axis=0)
+        surface = _over(surface, first, last)
+        parameters = np.clip(low + (parameters - first) / (last - first) * (high - low), low, high)
+    assert isinstance(surface, Surface)  # noqa: S101 - two directions
+    surface = replace(surface, control_points=unit.restored(surface.control_points))
+    u, v = parameters.T
+    return SurfaceFit(surface=surface, u=u, v=v, tolerance=tolerance, **figures_of(match, unit.extent, *notes))
+
+
+def _over(surface: Curve | Surface, first: Reals, last: Reals) -> Surface:
+    """The surface from its first to its last parameters (2,), where it is cut or continued; its domain stays."""
+    assert isinstance(surface, Surface)  # noqa: S101 - two directions
+    domains = surface.domain_u, surface.domain_v
+    for k, direction in enumerate(DIRECTIONS):
+        surface = extended(surface, float(first[k]), float(last[k]), direction)
+        surface = reparametrised(surface, *domains[k], direction)
+    return surface
+
+
+def _rectangle(points: Reals) -> Reals:
+    """Places (n, 2) in [0, 1] of points (n, 3) in the smallest rectangle around them in their principal plane.
+
+    One of its sides lies along one of the convex hull (Freeman and Shapira 1975); u runs along the longer side.
+    """
+    _, size, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)
+    if size[1] <= ON_A_LINE * size[0]:
+        raise FitError(f"the {len(points)} points lie on a line: a surface needs points beside it")
+    plane = points @ axes[:2].T
+    hull = plane[ConvexHull(plane).vertices]
+    sides = np.roll(hull, -1, axis=0) - hull
+    angles = np.arctan2(sides[:, 1], sides[:, 0])
+    turns = np.moveaxis(np.array([[np.cos(angles), -np.sin(angles)], [np.sin(angles), np.cos(angles)]]), 2, 0)
+    turn = turns[np.argmin(np.prod(np.ptp(hull @ turns, axis=1), axis=1))]
+    turned = plane @ turn
+    size = np.ptp(turned, axis=0)
+    shares = (turned - turned.min(axis=0)) / size
+    return shares if size[0] >= size[1] else shares[:, ::-1]
