@@ -76,11 +76,11 @@ from .files.writing import write_design as write_design
 from .fitting.assessment.result import Fit as Fit
 from .fitting.fit import fit as fit
 from .fitting.freeform.curves_and_surfaces import CurveFit as CurveFit
+from .fitting.freeform.curves_and_surfaces import SurfaceFit as SurfaceFit
 from .fitting.freeform.curves_and_surfaces import fit_curve as fit_curve
+from .fitting.freeform.curves_and_surfaces import fit_surface as fit_surface
 from .fitting.freeform.profile import ProfileFit as ProfileFit
 from .fitting.freeform.profile import fit_profile as fit_profile
-from .fitting.freeform.curves_and_surfaces import SurfaceFit as SurfaceFit
-from .fitting.freeform.curves_and_surfaces import fit_surface as fit_surface
 from .nurbs.curve import Curve as Curve
 from .nurbs.surface import Surface as Surface
 from .nurbs.trimmed import TrimmedSurface as TrimmedSurface
