@@ -1,6 +1,5 @@
 """From clouds to designs: what is found again, what is said of it, and what is refused."""
 
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -272,9 +271,10 @@ def test_clouds_and_calls_that_make_no_sense_are_refused_in_one_paragraph(points
     assert "\n" not in str(caught.value)
 
 
-def test_a_cloud_in_the_wrong_unit_is_said():
-    found = fit(1e3 * cloud(0, 300), replace(truth(0), length_unit="m"), free="stagger")
-    assert any("unit" in each for each in found.notes)
+def test_copies_of_points_share_no_misfit():
+    some = cloud(0, 400, NOISE)
+    once, thrice = (fit(np.repeat(some, count, axis=0), like=BASE) for count in (1, 3))
+    assert thrice.design.parameters() == once.design.parameters()
 
 
 @pytest.mark.parametrize(("order", "said"), [((0, 1, 2), False), ((2, 1, 0), True)])

@@ -247,8 +247,12 @@ def _check_flow_path(start: Design | None, like: Design | None, *, resized: bool
 
 
 def _searched_for(task: Task) -> Task:
-    """The task without the points that stand alone, and with no more points than searches use."""
-    some = task.thinned(MOST_SEARCHED)
+    """The task with no more points than searches use, without those that stand alone.
+
+    Where most points are copies, each place is taken once: copies share their noise, which would seem to be a misfit.
+    """
+    _, first = np.unique(task.points, axis=0, return_index=True)
+    some = (task.part(np.sort(first)) if 2 * len(first) <= len(task.points) else task).thinned(MOST_SEARCHED)
     places, back = np.unique(some.points, axis=0, return_inverse=True)
     return some.part(np.flatnonzero(~isolated_points(places)[np.ravel(back)]))
 
