@@ -2,20 +2,24 @@
 
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from bladewright.errors import FitError
+from bladewright.fitting.families import blades
 from bladewright.fitting.families.flow_path import ChannelCurves
+from bladewright.fitting.families.kinds import FAMILIES
 from bladewright.fitting.families.laws import counts_of, part_along_span, with_mean_laws
-from bladewright.fitting.families.section_shape import section_shape
+from bladewright.fitting.families.section_shape import section_shape, unrolled
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import FreeParameters, gauge_parameters, sliding_coordinate
 from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.models.blunt_edges import sides_of
 from bladewright.fitting.models.model import model_of
 from bladewright.section.laws import Span
+from bladewright.section.wedge_diffuser import WedgeDiffuser, WedgeDiffuserSection
 from machines.sectioned import BLUNT, COMPRESSOR, DESIGNS, DIFFUSER
 
 VANE = replace(DIFFUSER, tolerance=1e-4)
@@ -102,3 +106,22 @@ def test_a_section_for_the_flow_from_the_other_side_has_its_edges_exchanged_and_
 def test_edges_of_another_kind_than_points_are_refused():
     with pytest.raises(FitError, match="give the design as start"):
         ChannelCurves(blade=None).edge_like("leading_edge", None, 1e-3)
+
+
+def test_a_section_is_laid_out_by_lengths_on_a_cone():
+    """On a cone r = r0 exp(k m'), so that m = (r - r0) / k."""
+    radius, k = 0.3, 0.6
+    section = SimpleNamespace(scale=lambda x: radius * np.exp(k * x))
+    points = np.array([[-0.05, 0.2], [0.0, 0.1], [0.4, -0.3]])
+    r = radius * np.exp(k * points[:, 0])
+    found = unrolled(section, points)
+    np.testing.assert_allclose(found, np.stack([(r - radius) / k, r * points[:, 1]], axis=-1), atol=1e-8)
+
+
+def test_a_wedge_opens_downstream_whichever_way_its_flow_leads():
+    wedge = WedgeDiffuser(stagger_angle=30.0, leading_edge_radius=0.01, trailing_edge_radius=0.02, wedge_angle=9.0)
+    section = WedgeDiffuserSection(name="vane", length_unit="mm", chord=50.0, section=wedge).build()
+    shape = section_shape(section)
+    edges = SimpleNamespace(values=lambda name, _: np.array([[0.0, 2.0 if name == "leading_edge" else 1.0]]))
+    flow = [blades._backwards(edges, FAMILIES["wedge-diffuser"], None, each) for each in (shape, shape.reversed())]
+    assert flow == [False, True]

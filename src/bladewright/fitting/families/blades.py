@@ -13,7 +13,7 @@ from bladewright.fitting.assessment.acceptance import MatchTarget
 from bladewright.fitting.families.flow_path import ChannelCurves
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
 from bladewright.fitting.families.laws import counts_of, nearest_law, part_along_span, with_mean_laws, with_stations_of
-from bladewright.fitting.families.section_shape import SectionShape, section_shape
+from bladewright.fitting.families.section_shape import SectionShape, section_shape, unrolled
 from bladewright.fitting.families.sections import compared
 from bladewright.fitting.free_parameters import EDGES, FreeParameters, gauge_parameters
 from bladewright.fitting.initial_guess.blade import first_blade
@@ -43,6 +43,10 @@ FEASIBILITY_SPANS = Span(np.linspace(0.0, 1.0, 13))
 """places along the span at which laws must leave sections a shape"""
 LAW_COUNT = 3
 """control points of each law along the span where no structure is given"""
+CONFORMAL, UNROLLED = "m'-theta", "m-r*theta"
+"""planes of stream surfaces in which sections are tried"""
+SAME_RADIUS = 1.02
+"""ratio of the edges' radii below which both planes show the same sections but for their size, within 1 %"""
 MIDDLE = 3
 """number of the section in the middle, by which structures are compared"""
 BAND = 0.15
@@ -107,24 +111,34 @@ def _band(task: Task, closed: Blade, v: float) -> Reals:
 
 
 def _first(task: Task, closed: Blade, kind: FitFamily, like: Any, header: DesignHeader) -> list[Design]:
-    """Blades of the family whose sections are those of a closed blade, or without `like` that in its middle, too."""
+    """Blades of the family whose sections are those of a closed blade, or without `like` that in its middle, too.
+
+    They are laid out in the plane in which those sections are nearest to the family's.
+    """
     design = closed.design
     metre = UNITS[header.length_unit]
-    shapes = [section_shape(closed.section(float(v))) for v in START_SPANS]
     found = ChannelCurves(blade=closed)
-    found = replace(found, backwards=_backwards(found, kind, like, shapes[MIDDLE]))
+    built = [closed.section(float(v)) for v in START_SPANS]
+    middle = section_shape(built[MIDDLE])
+    found = replace(found, backwards=_backwards(found, kind, like, middle))
     band = _band(task, closed, float(START_SPANS[MIDDLE]))
-    if found.backwards:
-        shapes, band = [each.reversed() for each in shapes[::-1]], band * [-1.0, 1.0]
-    chosen = _matched(
-        kind,
-        shapes[MIDDLE],
-        band,
-        kind.first_parts(shapes[MIDDLE], None if like is None else with_mean_laws(like.section)),
-    )
-    parts = (
-        _parts_along_span(kind, shapes[MIDDLE::-1], chosen)[::-1] + _parts_along_span(kind, shapes[MIDDLE:], chosen)[1:]
-    )
+    radius = found.values("leading_edge", START_SPANS)[:, 1]
+    tried = []
+    parts: list[Any] = [None if like is None else with_mean_laws(like.section)]
+    for plane in _planes(found, like):
+        flat = plane == UNROLLED
+        shapes = [section_shape(each, unroll=flat) for each in built]
+        beside = unrolled(built[MIDDLE], band) if flat else band
+        if found.backwards:
+            shapes, beside = [each.reversed() for each in shapes[::-1]], beside * [-1.0, 1.0]
+        # the kind of part is chosen in the first plane
+        chosen = _matched(kind, shapes[MIDDLE], beside, kind.first_parts(shapes[MIDDLE], parts[0]))
+        matches = _along_span(kind, shapes[MIDDLE::-1], chosen)[::-1] + _along_span(kind, shapes[MIDDLE:], chosen)[1:]
+        parts = [_part_of(each) for each in matches]
+        tried.append((float(np.median([each.rms for each in matches])), plane, shapes, parts))
+        parts = [_part_of(chosen)]
+    _, plane, shapes, parts = min(tried, key=lambda each: each[0])
+    chosen = parts[MIDDLE]
     counts = dict.fromkeys(counts_of(chosen), LAW_COUNT) if like is None else counts_of(like.section)
     sections = [_laws(parts, counts)]
     if like is None:
@@ -132,6 +146,8 @@ def _first(task: Task, closed: Blade, kind: FitFamily, like: Any, header: Design
         sections.append(_laws([chosen] * len(parts), dict.fromkeys(counts, 1)))
     linear = design.arrangement == "linear"
     place = [float(each.start[1]) / metre if linear else float(np.degrees(each.start[1])) for each in shapes]
+    if plane == UNROLLED:
+        place = [each / r for each, r in zip(place, radius, strict=True)]
     fields: dict[str, Any] = {
         "name": header.name,
         "length_unit": header.length_unit,
@@ -144,7 +160,7 @@ def _first(task: Task, closed: Blade, kind: FitFamily, like: Any, header: Design
     fields[name] = nearest_law(place, START_SPANS, given)
     if like is None:
         fields |= {edge: found.edge(edge, metre) for edge in EDGES}
-        fields["flow_path"] = found.flow_path(metre)
+        fields |= {"flow_path": found.flow_path(metre), "plane": plane}
         return [kind.blade(**fields, section=part) for part in sections]
     fields |= {edge: found.edge_like(edge, getattr(like, edge), metre) for edge in EDGES}
     return [with_stations_of(replace(like, **fields, section=sections[0]), like)]
@@ -153,8 +169,8 @@ def _first(task: Task, closed: Blade, kind: FitFamily, like: Any, header: Design
 def _backwards(found: ChannelCurves, kind: FitFamily, like: Any, section: SectionShape) -> bool:
     """Whether the flow comes from the other side than the closed blade was found for.
 
-    Points do not show it: `like` does. Without it flow goes downstream along x; where blades stand radially it meets
-    the rounder edge first, and leads outwards through the passages of a diffuser of vanes.
+    Points do not show it: `like` does. Without it wedges open downstream, other blades lead along x, and where they
+    stand radially the flow meets the rounder edge first.
     """
     middle = np.array([0.5])
     first, last = (found.values(edge, middle)[0] for edge in EDGES)
@@ -162,10 +178,11 @@ def _backwards(found: ChannelCurves, kind: FitFamily, like: Any, section: Sectio
         metre = UNITS[like.length_unit]
         own = [np.real(getattr(like, edge).line(metre).values(middle))[0] for edge in EDGES]
         return float((last - first) @ (own[1] - own[0])) < 0.0
+    if kind.name == "wedge-diffuser":
+        first, last = section.half(np.array([0.2, 0.8]))
+        return bool(last < first)
     if abs(last[1] - first[1]) <= abs(last[0] - first[0]):
         return False
-    if kind.name == "wedge-diffuser":
-        return bool(last[1] < first[1])
     first, last = section.half(np.array([ROUNDNESS_PLACE, 1.0 - ROUNDNESS_PLACE]))
     return bool(last > ROUNDER_RATIO * first)
 
@@ -195,16 +212,33 @@ def _part_with_shape(parts: list[Any], counts: Mapping[str, int]) -> Any:
     return part
 
 
-def _parts_along_span(kind: FitFamily, shapes: list[SectionShape], first: Any) -> list[Any]:
-    """Parts of sections in a row, the first known: each begins as the one before, or as its shape says."""
+def _planes(found: ChannelCurves, like: Any) -> tuple[str, ...]:
+    """The planes in which sections may be those of the family: where radii differ, they are not the same shapes."""
+    if found.blade.design.arrangement == "linear":
+        return (CONFORMAL,)
+    if like is not None:
+        return (UNROLLED if like.plane == UNROLLED else CONFORMAL,)
+    radii = [found.values(edge, np.array([0.5]))[0, 1] for edge in EDGES]
+    return (CONFORMAL,) if max(radii) < SAME_RADIUS * min(radii) else (CONFORMAL, UNROLLED)
+
+
+def _along_span(kind: FitFamily, shapes: list[SectionShape], first: Match) -> list[Match]:
+    """Matches of sections in a row, the first known: each begins as the one before, or as its shape says."""
     found = [first]
     for shape in shapes[1:]:
-        found.append(_matched(kind, shape, shape.outline, [found[-1], *kind.first_parts(shape, found[-1])]))
+        before = _part_of(found[-1])
+        found.append(_matched(kind, shape, shape.outline, [before, *kind.first_parts(shape, before)]))
     return found
 
 
-def _matched(kind: FitFamily, shape: SectionShape, points: Reals, parts: Sequence[Any]) -> Any:
-    """The best part from several starts, matched to points (n, 2) of a section."""
+def _part_of(match: Match) -> Any:
+    """The part of a matched section."""
+    design: Any = match.design
+    return design.section
+
+
+def _matched(kind: FitFamily, shape: SectionShape, points: Reals, parts: Sequence[Any]) -> Match:
+    """The best match of points (n, 2) of a section from several parts."""
     task = Task(points=points, weights=np.ones(len(points)), free=_section_parameters, bounds={})
     x, y = shape.start
     designs = (
@@ -213,8 +247,7 @@ def _matched(kind: FitFamily, shape: SectionShape, points: Reals, parts: Sequenc
         )
         for part in parts
     )
-    found: Any = searched(task, compared(task, designs)[0].design, rounds=QUICK_ROUNDS).design
-    return found.section
+    return searched(task, compared(task, designs)[0].design, rounds=QUICK_ROUNDS)
 
 
 def _section_parameters(design: Design) -> tuple[str, ...]:

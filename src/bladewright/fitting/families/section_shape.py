@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from numpy.polynomial import Polynomial
+from scipy.integrate import cumulative_trapezoid
 
 from bladewright.nurbs.basis import Reals
 from bladewright.section.section import Section
@@ -16,6 +17,8 @@ INNER = (PLACES > 0.03) & (PLACES < 0.97)
 """those away from the edges, where a camber line between the sides may bend towards a corner of a thick edge"""
 CAMBER_TERMS = 5
 """coefficients of the polynomial that multiplies x (1 - x) in a camber line"""
+UNROLLED_PLACES = 2001
+"""places along a stream line between which its radius is linear: within 1e-7 of its length"""
 EDGE_PLACE = 0.02
 """chord fraction, from an edge, at which the half thickness bounds its radius"""
 
@@ -96,15 +99,28 @@ class SectionShape:
         )
 
 
-def section_shape(section: Section) -> SectionShape:
-    """The shape of a built section, in its plane."""
+def unrolled(section: Section, points: Reals) -> Reals:
+    """Points (n, 2) of a section in the plane (m', theta), laid out in the plane (m, r theta) [m]: dm = r dm'."""
+    low, high = min(float(np.min(points[:, 0])), 0.0), max(float(np.max(points[:, 0])), 0.0)
+    at = np.linspace(low, high, UNROLLED_PLACES)
+    radius = np.real(section.scale(at))
+    way = cumulative_trapezoid(radius, at, initial=0.0)
+    way -= np.interp(0.0, at, way)
+    x, around = points.T
+    return np.stack([np.interp(x, at, way), np.interp(x, at, radius) * around], axis=-1)
+
+
+def section_shape(section: Section, *, unroll: bool = False) -> SectionShape:
+    """The shape of a built section, in its plane, or in the plane (m, r theta)."""
     upper, lower = (np.real(section.curves[name](PLACES)) for name in ("upper", "lower"))
+    if unroll:
+        upper, lower = unrolled(section, upper), unrolled(section, lower)
     # the chord line ends in the middle of a blunt edge
     start, end = (0.5 * (upper[at] + lower[at]) for at in (0, -1))
     along = end - start
     chord, stagger = float(np.hypot(*along)), float(np.arctan2(along[1], along[0]))
     turn = np.array([[np.cos(stagger), -np.sin(stagger)], [np.sin(stagger), np.cos(stagger)]]) / chord
-    scale: Any = np.real(section.scale(np.array([start[0], end[0]])))
+    scale: Any = np.ones(2) if unroll else np.real(section.scale(np.array([start[0], end[0]])))
     radii = (float(radius / (each * chord)) for radius, each in zip(section.edge_radii, scale, strict=True))
     first, last = (min(radius, 0.5) for radius in radii)
     upper, lower = ((side - start) @ turn for side in (upper, lower))
