@@ -84,7 +84,7 @@ def scaled(value, factor):
         return tuple(scaled(each, factor) for each in value)
     if isinstance(value, int):
         return round(value * factor)
-    return 1.0 - (1.0 - value) * factor if 0.5 < value < 1.0 else value * factor
+    return float(f"{1.0 - (1.0 - value) * factor if 0.5 < value < 1.0 else value * factor:.6g}")
 
 
 class Changed(importlib.machinery.SourceFileLoader):
@@ -339,18 +339,44 @@ def line(path, name, value, factor, known):
     return f"| `{path}` {mark}`{name}`{mark} = {value} | {shown} | {'; '.join(cells) or '-'} |"
 
 
+STILL = """\
+## Without effect
+
+Half and twice of these change no figure of the rows by more than a twentieth:
+"""
 HEAD = """\
 # Constants of matching
 
-`{command}`, sources {state}, {date}: rows of `matching.py` with half and with twice of one constant. A row is named
-where its largest distance (of the chord) or its number of parameters changes by more than a twentieth, its seconds by
-half, or its status; before in brackets. Bold: by more than {matters} times. Rows of this script alone: `walls-`, share
-of a hub's, a fillet's and the sides' points that are taken for others (`walls.py`); `aligned-` and `prism-`, distance
-from their place of points that were moved; `plain-`, of the truth from plain fits (`freeform.py`).
+`python design/matching_constants.py`, sources {state}, {date}: rows of `matching.py` with half and with twice of one
+constant; of a confidence or share between a half and one, the rest to one. A row is named where its largest distance
+(of the chord) or its number of parameters changes by more than a twentieth, its seconds by half, or its status; before
+in brackets. Bold, and first: by more than {matters} times. For most only rows in the plane are run (LS89 with nothing
+asked, Impulse with a tolerance, a noisy blunt profile), so that what blades in space alone need seems to have no
+effect. Rows of this script alone: `walls-`, share of a hub's, a fillet's and the sides' points that are taken for
+others (`walls.py`); `aligned-` and `prism-`, distance from their place of points that were moved; `plain-`, of the
+truth from plain fits (`freeform.py`).
 
 | constant | value | what changes |
 |---|---|---|
 """
+
+
+def write_table(path, chosen, own, known):
+    """Write what was reached: a table, constants that matter first, and the names of those without effect."""
+    rows, still = [], {}
+    for of, name, value in chosen:
+        ran = [(f, row) for f in (0.5, 2.0) for row in rows_of(of) if (of, name, f, row) in known]
+        if not ran:
+            continue
+        found = [line(of, name, value, f, known) for f in (0.5, 2.0)]
+        if all(each.endswith("| - |") for each in found):
+            still.setdefault(of, []).append(f"`{name}` {value}")
+        else:
+            rows += [(not matters(of, name, known), each) for each in found if not each.endswith("| - |")]
+    head = HEAD.format(state=own, date=time.strftime("%Y-%m-%d"), matters=MATTERS)
+    lines = [each for _, each in sorted(rows, key=lambda each: each[0])]
+    quiet = [f"* {of}: {', '.join(names)}" for of, names in still.items()]
+    path.write_text(head + "\n".join(lines) + "\n\n" + STILL + "\n" + "\n".join(quiet) + "\n", encoding="utf-8")
 
 
 def main():
@@ -376,14 +402,7 @@ def main():
         return 0
     own, known = swept(chosen, given.limit, given.rows)
     if given.record:
-        head = HEAD.format(
-            command=f"python {' '.join(['design/matching_constants.py', *sys.argv[1:]])}",
-            state=own,
-            date=time.strftime("%Y-%m-%d"),
-            matters=MATTERS,
-        )
-        lines = [line(path, name, value, f, known) for path, name, value in chosen for f in (0.5, 2.0)]
-        given.record.write_text(head + "\n".join(lines) + "\n", encoding="utf-8")
+        write_table(given.record, chosen, own, known)
     return 0
 
 

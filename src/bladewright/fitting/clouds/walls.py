@@ -20,30 +20,30 @@ from bladewright.numerics.robust import median_deviation
 from bladewright.nurbs.basis import Reals
 
 LOOKED_AT = 6000
-"""points, drawn at random, among which sheets are sought; it bounds the time"""
+"""points, drawn at random, among which sheets are sought; it bounds the time (design/matching_constants.md)"""
 PATCH, BESIDE = 12, 24
 """points of a patch, whose plane is known to some degrees, and of the surroundings of a point in the meridional plane,
-both sides of the blade among them"""
+both sides of the blade among them (design/matching_constants.md)"""
 FLAT, AREA = 0.1, 0.3
 """ratio of a patch's extents in the meridional plane up to which it stands on a curve there, and in space from which it
-is an area and no row of points (`AREA`)"""
+is an area and no row of points (`AREA`) (design/matching_constants.md)"""
 TURN = 0.3
 """sine of the angle between neighbouring patches of one sheet at most: without, 63 of 23,731 points of hubs fewer are
 told (design/matching.md)"""
 FEWEST_SHARE = 0.01
-"""share of the points that the smallest wall has, and two patches in any case"""
+"""share of the points that the smallest wall has, and two patches in any case (design/matching_constants.md)"""
 WIDER = 1.2
 """width of a wall along the pitch, of the largest thickness beside it: sheets of clouds without walls reach 0.91, walls
 that reach half a chord to each side begin at 1.4 (design/matching.md)"""
 FILLET_PATCH = 8
-"""points of a patch of a fillet, which is small"""
+"""points of a patch of a fillet, which is small (design/matching_constants.md)"""
 AT_WALL, ON_FILLET = 0.65, 0.5
 """cosine between the normals of wall and surface, by the median of `BESIDE` points, from which the points next to a
 wall are a fillet's, and down to which those above are (`ON_FILLET`): next to 1,000 points of a wall it is 0.74 at least
 with fillets, and 0.58 at most without, of a blade that leans by as much (design/matching.md)"""
 ROW_WIDTH, LEAST_SCATTER = 4.5, 1e-4
 """standard deviations of its scatter within which a point stands on a wall's curve, and the least such distance, of the
-wall's extent, for exact walls are curved within a patch"""
+wall's extent, for exact walls are curved within a patch (design/matching_constants.md)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
