@@ -13,6 +13,7 @@ from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, MatchTarget
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
 from bladewright.fitting.families.section_shape import SectionShape, section_shape
+from bladewright.fitting.families.unified import matched_unified
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.section import first_section
 from bladewright.fitting.matching.scales import check_bounds
@@ -63,7 +64,11 @@ def matched_section(
         found, reason = selected_match(task, start, target, like=None, guessed=False)
         return buildable_tolerance(found), reason
     shape = None if start is not None or kind.contour_shape is None else kind.contour_shape(task.points)
-    if shape is None:
+    if shape is None and start is None and kind.contour_shape is not None:
+        # its segments are laid on the section one by one, which must be as near as a match
+        free = replace(task, free=FreeParameters(), bounds={})
+        shape = section_shape(matched_unified(free, None, None, header, MatchTarget())[1])
+    elif shape is None:
         closed = start or first_section(task.points, name=header.name, length_unit=header.length_unit)
         shape = section_shape(closed.build())
     else:
