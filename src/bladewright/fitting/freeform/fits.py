@@ -105,22 +105,20 @@ class Unit:
 
 def figures_of(match: ShapeMatch[S], extent: float, *notes: str) -> dict[str, Any]:
     """The figures of a fit."""
-    if match.rank < len(match.singular_values):
-        notes += (
-            (
-                f"the points determine {match.rank} of {len(match.singular_values)} directions of the unknowns: the "
-                "others bend the shape as little as they can"
-            ),
-        )
+    rank, unknowns = match.rank, len(match.singular_values)
+    open_note = (
+        f"the points determine {rank} of {unknowns} directions of the unknowns: the others bend the shape as little as "
+        "they can"
+    )
     return {
         "distances": match.distances * extent,
         "inliers": match.inliers,
         "iterations": match.evaluations,
         "converged": match.converged,
         "singular_values": match.singular_values,
-        "rank": match.rank,
+        "rank": rank,
         "noise": match.noise * extent,
-        "notes": notes,
+        "notes": (*notes, open_note) if rank < unknowns else notes,
     }
 
 
@@ -158,21 +156,22 @@ def checked_ends(ends: Any, unit: Unit) -> Reals | None:
         if ends in ("fixed", "free"):
             return None
         raise FitError(f"ends {ends!r} are unknown: `fixed`, `free`, or the first and the last point")
-    try:
-        pair = np.array(ends, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise FitError(f"ends {ends!r} were given: `fixed`, `free`, or the first and the last point") from error
+    pair = _numbers(ends, "the ends")
     if pair.shape != (2, len(unit.centre)) or not np.isfinite(pair).all():
         raise FitError(f"ends of shape {pair.shape} were given: two finite points of {len(unit.centre)} coordinates")
     return unit.scaled(pair)
 
 
+def _numbers(given: Any, what: str) -> Reals:
+    try:
+        return np.array(given, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise FitError(f"{what} are not numbers ({error}); give an array of coordinates") from error
+
+
 def checked_points(points: ArrayLike, what: str, dimensions: tuple[int, ...] = ()) -> Reals:
     """Points (n, d) that are finite and not all the same; FitError otherwise."""
-    try:
-        given = np.array(points, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise FitError(f"the points of {what} are not numbers ({error}); give an array (n, d)") from error
+    given = _numbers(points, f"the points of {what}")
     wanted = " or ".join(str(count) for count in dimensions) or "2, 3 or more"
     if given.ndim != 2 or given.shape[1] < 2 or (dimensions and given.shape[1] not in dimensions):
         raise FitError(

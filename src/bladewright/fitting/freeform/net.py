@@ -97,10 +97,9 @@ class Net(Shape):
 
     @cached_property
     def gauge(self) -> Reals:
-        """(N, k) orthonormal changes of the logarithms that change the shape.
+        """(N, k) orthonormal changes of the logarithms that change the shape; a common factor does not.
 
-        A common factor of all weights does not. Along a direction without inner knots, neither does a geometric
-        progression: the weights w_i c^i are a projective change of its parameter (Piegl and Tiller 1997, section 6.2).
+        Along a direction without inner knots, neither do w_i c^i (Piegl and Tiller 1997, section 6.2).
         """
         if not self.weighted:
             return np.zeros((len(self.points), 0))
@@ -257,16 +256,12 @@ def net_of(shape: Curve | Surface, *, closed: bool = False, knots: tuple[Reals, 
         degrees, own = (shape.degree,), (breaks(shape.knots) if closed else shape.knots,)
     else:
         degrees, own = (shape.degree_u, shape.degree_v), (shape.knots_u, shape.knots_v)
-    knots, dimension = knots or own, coordinates.shape[1] - 1
+    net = Net(knots=knots or own, degrees=degrees, points=np.zeros((0, 0)), log_weights=np.zeros(0), closed=closed)
     if closed:
-        count = len(knots[0]) - 1
-        empty = Net(
-            knots=knots, degrees=degrees, points=np.zeros((count, dimension)), log_weights=np.zeros(count), closed=True
-        )
+        empty = replace(net, points=np.zeros((len(net.knots[0]) - 1, 1)))
         coordinates = np.linalg.lstsq(empty.spread, coordinates, rcond=None)[0]
     logs = np.zeros(len(coordinates)) if shape.weights is None else np.log(coordinates[:, -1])
-    points = coordinates[:, :-1] / coordinates[:, -1:]
-    return Net(knots=knots, degrees=degrees, points=points, log_weights=logs, closed=closed)
+    return replace(net, points=coordinates[:, :-1] / coordinates[:, -1:], log_weights=logs)
 
 
 def empty_net(
@@ -313,14 +308,15 @@ def _products(knots: Reals, degree: int) -> list[Reals]:
 
 def matched_within(net: Net, points: Reals, options: Options, *, warm: bool) -> tuple[ShapeMatch[Net], tuple[str, ...]]:
     """The match within the largest distance that is asked for, and a note why it is not reached."""
-    unknowns = int(net.free.sum()) * (points.shape[1] if len(net.knots) == 1 else 1)
+    dimensions = len(net.knots)
+    unknowns = int(net.free.sum()) * (points.shape[1] if dimensions == 1 else 1)
     unknowns += len(net.points) - 1 if options.weights_free else 0
-    rows = len(np.unique(points, axis=0)) * (points.shape[1] - len(net.knots))
+    rows = len(np.unique(points, axis=0)) * (points.shape[1] - dimensions)
     if unknowns > rows:
-        counts = " x ".join(str(count) for count in net.counts)
         raise FitError(
-            f"{len(points)} points, which give {rows} distances, were to determine {unknowns} unknowns of {counts} "
-            "control points: take fewer control points, fixed weights, or more points"
+            f"{len(points)} points, which give {rows} distances, were to determine {unknowns} unknowns of "
+            f"{' x '.join(map(str, net.counts))} control points: take fewer control points, fixed weights, or more "
+            "points"
         )
     match = matched_by_stages(placed(net, points), options, () if warm else STIFFNESSES)
     limit = np.inf if options.tolerance is None else options.tolerance / options.extent

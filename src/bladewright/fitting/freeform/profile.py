@@ -245,13 +245,12 @@ def fit_profile(
             moved = start.unknowns
             moved[:2], moved[2 * camber - 2 : 2 * camber] = pair
             start = start.changed(moved)
-        # a blunt edge that stands out of its points costs nothing, so that its end is freed last
-        blunt = trailing_edge == "blunt"
-        match = placed(replace(start, fixed=blunt or not free), scaled)
+        match = placed(replace(start, fixed=True), scaled)
         upper = match.parameters[:, 0] >= 0.0
         counts = np.where(upper, np.sum(upper), np.sum(~upper))
         match = matched_by_stages(replace(match, weights=0.5 * len(scaled) / counts), options, STIFFNESSES[2:])
-        if blunt and free:
+        if free:
+            # last, because a blunt edge that stands out of its points costs nothing (design/freeform.md)
             match = matched_by_stages(replace(match, shape=replace(match.shape, fixed=False)), options, ())
         of, u = match.shape, match.parameters[:, 0]
         heights = of.thickness.control_points * unit.extent + np.array([unit.centre[0], 0.0])
@@ -265,28 +264,19 @@ def fit_profile(
         )
 
     found = fitted(camber, thickness)
-    evaluations, reason = (
-        found.iterations,
-        f"the tolerance is not reached after {MOST_GROWTHS} rounds of control points",
-    )
-    for growth in range(1, MOST_GROWTHS + 1):
-        if tolerance is None or found.maximum <= tolerance:
-            break
+    evaluations, growth, reason = found.iterations, 0, ""
+    while tolerance is not None and found.maximum > tolerance and not reason:
+        growth += 1
         if found.maximum <= NOISE_MAXIMUM * found.noise:
             reason = "what is left is the noise of the points: more control points would follow it"
-            break
-        try:
+        elif growth > MOST_GROWTHS or len(scaled) < 2 * (camber + thickness + 2 * growth):
+            reason = f"{len(scaled)} points and {MOST_GROWTHS} rounds of control points do not reach the tolerance"
+        else:
             richer = fitted(camber + growth, thickness + growth)
-        except FitError as refusal:
-            reason = str(refusal)
-            break
-        evaluations += richer.iterations
-        if richer.maximum >= found.maximum:
-            reason = "further control points bring the profile no nearer"
-            break
-        found = richer
-    notes = found.notes if found.passed or tolerance is None else (*found.notes, reason)
-    return replace(found, iterations=evaluations, notes=notes)
+            evaluations += richer.iterations
+            nearer = richer.maximum < found.maximum
+            found, reason = (richer, "") if nearer else (found, "further control points bring the profile no nearer")
+    return replace(found, iterations=evaluations, notes=(*found.notes, reason) if reason else found.notes)
 
 
 def _start(points: Reals, camber: int, thickness: int, *, round_end: bool) -> CamberThickness:
