@@ -31,11 +31,11 @@ TRIAL_POINTS, TRIAL_ROUNDS = 400, 2
 """points and rounds of the search by which first designs are compared"""
 CONSIDERED, PROMISING = 3, 3.0
 """first designs that are searched on at most, and ratio of their misfits to the least (`PROMISING`): a search of a few
-rounds and control points tells them apart by about that much"""
+rounds and control points tells them apart by about that much (design/matching.md)"""
 EXACT = 1e-9
 """misfit below which matches are alike, of the chord: the native curves of sections are as near."""
-OUTLINE_COUNTS = (24, 32, 44, 60, 80)
-"""numbers of points of contours that are tried in turn"""
+OUTLINE_COUNTS = (24, 32, 44)
+"""numbers of points of contours that are tried in turn: searches of more end further off (design/matching.md)"""
 OUTLINE_DEVIATION = 1e-4
 """largest distance with which a contour gets no further points where nothing is asked for, of the chord: a fifth of
 what acceptance trusts"""
