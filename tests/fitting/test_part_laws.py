@@ -4,13 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from bladewright.fitting.assessment.acceptance import MatchTarget
 from bladewright.fitting.families.kinds import FAMILIES, DesignHeader
 from bladewright.fitting.families.profile import first_parts, through_points
 from bladewright.fitting.families.section_shape import section_shape
 from bladewright.fitting.families.sections import _through_points, criterion, designs_of
-from bladewright.fitting.free_parameters import FreeParameters
+from bladewright.fitting.free_parameters import EDGES, FreeParameters
 from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.model_selection.elimination import LinearModel
 from bladewright.fitting.model_selection.reshaping import reshaped, richest
@@ -37,11 +38,14 @@ def test_a_blade_with_more_control_points_along_the_span_is_the_same_blade(desig
     v, structure = np.linspace(0.0, 1.0, 5), structure_of(design)
     # the largest control point of a row that counts by ratios alone is held
     for law in (each for each in resizable_laws(design) if set(each.paths(design)) & set(FreeParameters()(design))):
-        along, across = law.counts(structure)
-        wider = reshaped(design, law.resized(structure, (along, across + 3)))
+        *along, across = law.counts(structure)
+        wider = reshaped(design, law.resized(structure, (*along, across + 3)))
         assert len(FreeParameters()(wider)) > len(FreeParameters()(design)), law.name
         # constants and laws of up to three control points are held by more; others come near
         assert outline(wider.section, v) == pytest.approx(outline(design.section, v), abs=1e-3), law.name
+        for edge in EDGES:
+            line, own = (getattr(each, edge).line(1.0).values(np.linspace(0.0, 1.0, 801)) for each in (wider, design))
+            assert np.max(cKDTree(line).query(own)[0]) < 5e-3 * np.max(np.ptp(own, axis=0)), law.name
 
 
 @pytest.mark.parametrize("design", [ROWS, section(STATOR), EXAMPLES["camber-angle-blunt"].design])

@@ -7,14 +7,18 @@ from functools import singledispatch
 from typing import Any, ClassVar, final
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
+from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.blade.design.sectioned import SectionedBlade
-from bladewright.designs import Law
+from bladewright.designs import Law, Point
 from bladewright.errors import DesignError
+from bladewright.fitting.free_parameters import EDGES, sliding_coordinate
 from bladewright.fitting.initial_guess.slices import plain_law
 from bladewright.fitting.model_selection.reshaping import reshaped, richest
 from bladewright.fitting.model_selection.structure import (
     COMPARED_PLACES,
+    MOST_CURVE,
     MOST_SPAN,
     Counts,
     ResizableLaw,
@@ -34,6 +38,10 @@ RICH_CHORDWISE = {2: 12, 3: 8}
 """control points of a law along the chord in a rich structure, by dimension."""
 RICH_SPAN = 5
 """control points of a law along the span in a rich structure."""
+RICH_EDGE = 8
+"""points on an edge curve of a rich structure: as many as on a channel's edges"""
+EDGE_SAMPLES = 2001
+"""places between which an edge curve is linear: within 1e-7 of its length"""
 MOST_CHORDWISE = 24
 """control points of a law along the chord at most; it bounds the time."""
 
@@ -209,6 +217,37 @@ class RatioLaw(PartLaw):
     holds_corners: ClassVar[bool] = True
 
 
+@final
+class EdgeCurve(PartLaw):
+    """An edge curve through points at even steps of the coordinate in which they slide on it, whose other is free."""
+
+    def counts_of(self, design: Any) -> Counts:
+        return (len(getattr(design, self.name).points),)
+
+    def limits(self) -> tuple[Counts, Counts]:
+        return (2,), (MOST_CURVE,)
+
+    def paths(self, design: Any) -> list[str]:
+        free = "x" if sliding_coordinate(design, self.name) == "r" else "r"
+        return [f"{self.name}.points[{i}].{free}" for i in range(*self.counts_of(design))]
+
+    def embedding(self, structure: PartStructure, counts: Counts) -> Reals:
+        own, other = (np.linspace(0.0, 1.0, each[0]) for each in (self.counts(structure), counts))
+        return np.asarray(CubicSpline(other, np.eye(len(other)))(own))
+
+    def resized_value(self, design: Any, counts: Counts) -> Any:
+        curve = getattr(design, self.name)
+        if self.counts_of(design) == counts:
+            return curve
+        line = np.real(curve.line(1.0).values(np.linspace(0.0, 1.0, EDGE_SAMPLES)))
+        line = line[:, ::-1] if sliding_coordinate(design, self.name) == "r" else line
+        order = np.argsort(line[:, 0])
+        at = np.linspace(line[0, 0], line[-1, 0], counts[0])
+        rows = np.stack([at, np.interp(at, *line[order].T)], axis=-1)
+        rows = rows[:, ::-1] if sliding_coordinate(design, self.name) == "r" else rows
+        return replace(curve, points=tuple(Point(*row) for row in rows.tolist()))
+
+
 def _nearest(row: Chordwise, count: int, other: int) -> Reals:
     """Control points of the rows nearest to those of another count."""
     return np.asarray(np.linalg.lstsq(row.basis(count), row.basis(other), rcond=None)[0])
@@ -226,8 +265,11 @@ def _laws(design: Any) -> list[Any]:
         for name, row in rows.items()
         if name not in stationary
     ]
+    if not spanwise:
+        return found
     single = [path for path, _ in laws if path.partition("[")[0] not in {*stationary, *rows}]
-    return [*found, *(PartLaw(path, None, spanwise) for path in single)] if spanwise else found
+    edges = [edge for edge in EDGES if isinstance(getattr(design, edge), ThroughPoints)]
+    return [*found, *(PartLaw(path, None, spanwise) for path in single), *(EdgeCurve(e, None, spanwise) for e in edges)]
 
 
 def _structure(design: Any) -> PartStructure:
@@ -258,10 +300,13 @@ def _has_shape(design: Any) -> bool:
 
 
 def _richest(design: Any) -> PartStructure:
-    found = {}
+    found: dict[str, Counts] = {}
     for law in _laws(design):
-        along, across = law.counts_of(design)
         most = law.limits()[1]
+        if len(most) == 1:
+            found[law.name] = (max(*law.counts_of(design), RICH_EDGE),)
+            continue
+        along, across = law.counts_of(design)
         chordwise = along if law.row is None else max(along, RICH_CHORDWISE[3 if law.spanwise else 2])
         found[law.name] = min(chordwise, most[0]), min(max(across, RICH_SPAN), most[1])
     return PartStructure(found)
