@@ -63,6 +63,31 @@ def test_the_camber_line_is_the_integral_of_the_angles_tangent(part, given):
     assert line[-1, 0] == pytest.approx(1.0, abs=1e-14)
 
 
+def test_a_batch_of_complex_steps_carries_central_differences(part):
+    """Of an angle, of a height, and of how the meridional length grows, each alone in a batch of three."""
+
+    def upper(steps):
+        angle, height, growth = steps
+        made = part.stepped(
+            {
+                "camber_angle[0]": part.camber_angle[0] + angle,
+                "half_thickness[1]": part.half_thickness[1] + height,
+            }
+        )
+
+        def uneven(places):
+            share = np.asarray(0.4 + growth)[..., None, None]
+            return places * (1.0 - share * (1.0 - places)) + np.zeros((1, 1))
+
+        return np.asarray(made.outline(SPAN, uneven).points(S)[0])
+
+    carried = np.imag(upper(1j * STEP * np.eye(3))) / STEP
+    for number, by in enumerate((1e-3, 1e-6, 1e-5)):
+        step = by * np.eye(3)[number]
+        expected = (upper(step) - upper(-step)) / (2.0 * by)
+        assert carried[number] == pytest.approx(expected, abs=1e-8)
+
+
 def test_a_linear_angle_gives_the_logarithm_of_its_cosine():
     part = CamberAngle(camber_angle=(60.0, 20.0), half_thickness=(0.01, 0.03, 0.03, 0.01))
     line = in_plane(part, part.outline(SPAN).camber(S)[0])
