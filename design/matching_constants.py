@@ -37,7 +37,7 @@ ROWS = {
     "clouds/walls.py": ("walls-compressor-stator", "walls-fan-rotor"),
     "clouds/cloud.py": ("aachen-annulus", "fan-two", "impeller-two", "ls89-suction"),
     "clouds": ("ls89-suction", "ls89-outliers", "compressor-outliers"),
-    "registration": ("aligned-compressor", "aligned-fan", "aligned-turbine", "prism-aachen"),
+    "registration.py": ("aligned-compressor", "aligned-fan", "aligned-turbine", "prism-aachen"),
     "freeform": ("plain-curve", "plain-surface", "plain-profile"),
     "families": ("Aachen2D-suction-pressure", "naca-sharp-noisy-profile", "opened-curvature-meanline-5"),
     "families/segmented.py": ("example-morphing-airfoil",),
@@ -180,7 +180,7 @@ def aligned(machine, *, started=True):
     import matching_clouds as clouds
     import numpy as np
 
-    from bladewright.fitting.registration import axes, registration
+    from bladewright.fitting.registration import found_axes, registration
 
     draw, design = np.random.default_rng(3), clouds.example(clouds.BROUGHT[machine])
     sides = design.build().sides
@@ -188,9 +188,9 @@ def aligned(machine, *, started=True):
     moved = clouds.elsewhere(clouds.strewn(clouds.noisy(true, draw), draw) if started else true)
     since = time.process_time()
     if started:
-        motion = registration.registration(moved, design).motion
+        motion = registration(moved, design)[0]
     else:
-        motion = axes.found_axes(moved, arrangement="linear")[0]
+        motion = found_axes(moved, arrangement="linear")[0]
     seconds = time.process_time() - since
     back = motion(clouds.elsewhere(true))
     extent = np.max(np.ptp(true, axis=0))
@@ -246,9 +246,11 @@ def run(path, name, factor, rows, limit):
         theirs.close()
         try:
             found = ours.recv()
+            process.join()
         except EOFError:
-            found = {"far": None, "parameters": None, "status": "killed", "seconds": limit}
-        process.join()
+            process.join()
+            status = "killed" if process.exitcode < 0 else "broke"
+            found = {"far": None, "parameters": None, "status": status, "seconds": limit}
         print(json.dumps({"row": row, **found}), flush=True)
 
 
