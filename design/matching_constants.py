@@ -187,10 +187,7 @@ def aligned(machine, *, started=True):
     true = clouds.scattered(sides, 5000, draw)
     moved = clouds.elsewhere(clouds.strewn(clouds.noisy(true, draw), draw) if started else true)
     since = time.process_time()
-    if started:
-        motion = registration(moved, design)[0]
-    else:
-        motion = found_axes(moved, arrangement="linear")[0]
+    motion = registration(moved, design)[0] if started else found_axes(moved, arrangement="linear")[0]
     seconds = time.process_time() - since
     back = motion(clouds.elsewhere(true))
     extent = np.max(np.ptp(true, axis=0))
