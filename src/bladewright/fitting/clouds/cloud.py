@@ -26,19 +26,20 @@ SHEET_SAMPLE = 3000
 THINNEST_BLADE = 1.3e-3
 """roughness, of its width, below which a cloud is a smooth sheet: one side and no blade."""
 COMPARED_POINTS = 6000, 2000
-"""points among which neighbours are joined: many part blades that stand close, few join the rows of one."""
+"""points among which neighbours are joined: many part blades that stand close, few join the rows of one
+(design/matching_constants.md)."""
 NEIGHBOURS = 8
-"""neighbours with which a point may be joined; it bounds the time"""
+"""neighbours with which a point may be joined; it bounds the time (design/matching_constants.md)"""
 GAP = {2: 4.5, 3: 2.5}
-"""distance that parts pieces, in the spacing of the points, by dimension"""
+"""distance that parts pieces, in the spacing of the points, by dimension (design/matching_constants.md)"""
 PIECE_POINTS = {2: 24, 3: 50}
 """points of the smallest piece, by dimension"""
 SAME_SHAPE = 0.005
-"""distance within which copies lie on each other, of their extent"""
+"""distance within which copies lie on each other, of their extent (design/matching_constants.md)"""
 BLADE_COUNTS = range(2, 152)
 """numbers of blades around the axis that are tried"""
 TURNED_POINTS = 300
-"""points that are turned by each trial pitch; it bounds the time."""
+"""points that are turned by each trial pitch; it bounds the time (design/matching_constants.md)."""
 
 
 def checked_cloud(cloud: ArrayLike) -> Reals:
