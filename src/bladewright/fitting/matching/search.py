@@ -193,6 +193,27 @@ def has_systematic_misfit(match: Match) -> bool:
     return estimate.correlation > NOISE_CORRELATION or match.rms * match.model.chord > FAR_OFF * estimate.noise
 
 
+EXACT_NOISE = 1e-5
+"""noise, of the chord, below which a cloud is exact: the largest of 5,000 normal errors is then half of
+what exact points are met within."""
+
+
+def is_exact(match: Match) -> bool:
+    """Whether neighbouring points tell that a cloud has next to no noise."""
+    return match.noise_estimate.noise < EXACT_NOISE * match.model.chord
+
+
+def is_refused(match: Match) -> bool:
+    """Whether a blade that searches allow is refused when it is built: its edge radii need a larger margin."""
+    if match.state.footpoints.points.shape[1] == 2:
+        return False
+    try:
+        match.design.build()
+    except DesignError:
+        return True
+    return False
+
+
 def searched(
     task: Task,
     start: Design,

@@ -54,6 +54,11 @@ class Prediction:
         return float(np.sqrt(np.mean(self.rows**2)))
 
     @property
+    def deviation(self) -> float:
+        """Standard deviation of the noise, of the chord, if the residuals are nothing else."""
+        return float(np.sqrt(np.sum(self.rows**2) / max(len(self.rows) - self.parameters, 1)))
+
+    @property
     def largest(self) -> float:
         """The largest residual, of the chord."""
         return float(np.max(np.abs(self.rows)))

@@ -192,12 +192,17 @@ def rich_structure(design: Design, points: int) -> Any:
     return _towards(richest(design), design, points)
 
 
-def wider_structure(design: Design, points: int) -> Any:
-    """A rich structure with a third as many control points again in every law of a design."""
-    own, wide = structure_of(design), richest(design)
+def wider_structure(design: Design, points: int, *, slim: bool = False) -> Any:
+    """A structure with a third as many control points again in every law of a design, and a rich one at least.
+
+    Of one that is `slim`, which has lost what it does not need, half as many again and no more.
+    """
+    own = structure_of(design)
+    wide, share = (own, 2) if slim else (richest(design), 3)
     for law in resizable_laws(design):
         counts = zip(law.counts(own), law.counts(wide), law.limits()[1], strict=True)
-        wide = law.resized(wide, tuple(max(rich, min(count + count // 3, most)) for count, rich, most in counts))
+        more = (max(few, min(count + max(1, count // share), most)) for count, few, most in counts)
+        wide = law.resized(wide, tuple(more))
     return _towards(wide, design, points)
 
 

@@ -18,7 +18,16 @@ from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import EXACT, NEAR_EVERYWHERE, MatchTarget
 from bladewright.fitting.assessment.estimates import undetermined_parameters
 from bladewright.fitting.free_parameters import corner_radii
-from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, evaluated, has_systematic_misfit, searched
+from bladewright.fitting.matching.search import (
+    ROUGH_REDUCTION,
+    Match,
+    Task,
+    evaluated,
+    has_systematic_misfit,
+    is_exact,
+    is_refused,
+    searched,
+)
 from bladewright.fitting.model_selection.edges import from_other_edges, with_sharp_edges
 from bladewright.fitting.model_selection.elimination import (
     LARGEST_PREDICTED,
@@ -29,7 +38,12 @@ from bladewright.fitting.model_selection.elimination import (
     eliminated,
     reweighted_prediction,
 )
-from bladewright.fitting.model_selection.reshaping import reshaped, rich_structure, wider_structure, with_feasible_edges
+from bladewright.fitting.model_selection.reshaping import (
+    reshaped,
+    rich_structure,
+    wider_structure,
+    with_feasible_edges,
+)
 from bladewright.fitting.model_selection.reweighting import (
     confirmed_match,
     largest_of,
@@ -92,11 +106,9 @@ def selected_match(
     near = NEAR * found.model.chord
     if target.open and found.maximum < near:
         rich = found
-    elif target.open and task.dimension == 2:
-        rich = selection.rich(found, lambda each: each.maximum <= near)
     else:
-        aim = NEAR_EVERYWHERE * found.model.chord if target.open else target.tolerance or np.inf
-        rich = selection.rich(found, partial(selection.holds, tolerance=aim))
+        holds = partial(selection.holds, tolerance=target.tolerance or np.inf)
+        rich = selection.rich(found, _near_enough if target.open else holds, slim=not target.open)
     if len(rich.rows) < len(several.points):
         # no richer one has a shape, or none is needed: the first match, of few points, stands
         rich = evaluated(several, rich.design, noise=rich.rms)
@@ -117,8 +129,8 @@ def _searched_further(task: Task, match: Match) -> Match:
     """A match searched on, or as it is where that cannot be built, or is far from some points, and the match is not."""
     try:
         found = searched(task, match.design, noise=match.rms, min_reduction=FINAL_REDUCTION)
-        unasked = NEAR_EVERYWHERE * match.model.chord
-        if match.maximum <= unasked < found.maximum or (_refused(found) and not _refused(match)):
+        near = max(_open_limit(match), NEAR_RICH * match.maximum)
+        if found.maximum > near or (is_refused(found) and not is_refused(match)):
             found = evaluated(task, match.design, noise=match.rms)
     except FitError:
         return match
@@ -145,7 +157,7 @@ def _of_structure(several: Task, many: Task, found: Match, structure: Structure,
         tried = [found] if structure_of(found.design) == structure else []
         starts = [found] if not tried else []
         if not tried or has_systematic_misfit(found):
-            starts.append(selection.rich(found, lambda _: True))
+            starts.append(selection.rich(found, lambda _: True, slim=True))
         for start in starts:
             try:
                 tried.append(searched(several, reshaped(start.design, structure), noise=GUESS_NOISE))
@@ -173,16 +185,14 @@ NEAR_RICH = 1.25
 """largest distance that a match keeps whose misfit is no noise and of which nothing is asked, of that of a rich one."""
 NOISE_QUANTILE = 1.645
 """standard errors by which a misfit may pass the noise, which one of pure noise does once in twenty times."""
-AIMS = (0.5 * EXACT, 0.8 * NEAR_EVERYWHERE)
-"""largest distances, of the chord, that matches are predicted to have of which nothing is asked: the first that can be
-kept. They are parts of what is asked of the matches themselves, as predictions are linear."""
+NEAR, ENOUGH = 0.5 * EXACT, 0.8 * NEAR_EVERYWHERE
+"""largest distances, of the chord, that matches are predicted to have of which nothing is asked: where they can be
+exact, and else. They are parts of what is asked of the matches themselves, as predictions are linear."""
 TRIED_SHARES = (1.0, 0.75, 0.5, 0.25, 0.0)
 """which of the structures that are predicted to do are searched, from that of fewest parameters, until one does"""
-NEAR = 5e-5
-"""largest distance, of the chord, from which rich structures get more control points where nothing is asked for."""
 RICHER_GAIN = 0.6
 """ratio of the misfits of two rich structures above which a richer one is of no use: a third as many control points
-again bring a cubic spline nearer by (3/4)^4, a third (de Boor 1978, chapter 12)."""
+again bring a cubic spline nearer by (3/4)^4, a third, half as many by a fifth (de Boor 1978, chapter 12)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -205,25 +215,34 @@ class _Selection:
             reweighted_prediction(model, prediction, relative).largest <= PREDICTED * relative
         )
 
-    def rich(self, match: Match, enough: Callable[[Match], bool]) -> Match:
-        """The match of a rich structure, and of ever richer ones until one is near enough.
+    def rich(self, match: Match, enough: Callable[[Match], bool], *, slim: bool) -> Match:
+        """The match of a rich structure, and of ever richer ones until one is near enough or comes hardly nearer.
 
-        It is the one before where a richer one has no shape, or comes hardly nearer.
+        Where points are exact, or these are to be `slim`, a structure loses what it does not need before it is widened.
         """
-        found, widened = match, rich_structure
+        found, points = match, len(self.task.points)
         while found is match or (has_systematic_misfit(found) and not enough(found)):
             try:
-                structure = widened(found.design, len(self.task.points))
-                design = with_feasible_edges(reshaped(found.design, structure))
-                richer = searched(
-                    self.task, design, noise=found.rms, rounds=QUICK_ROUNDS + 1, min_reduction=ROUGH_REDUCTION
-                )
+                about, slim = found.design, slim or is_exact(found)
+                about = self._without_surplus(found) if slim and found is not match else about
+                widened = rich_structure if found is match else partial(wider_structure, slim=slim)
+                structure = widened(about, points)
+                design, rounds = with_feasible_edges(reshaped(about, structure)), QUICK_ROUNDS + 1
+                richer = searched(self.task, design, noise=found.rms, rounds=rounds, min_reduction=ROUGH_REDUCTION)
             except (DesignError, FitError):
                 break
-            if found is not match and richer.rms > RICHER_GAIN * found.rms:
+            before, found = found, richer if found is match or richer.rms < found.rms else found
+            if before is not match and min(richer.rms / before.rms, richer.maximum / before.maximum) > RICHER_GAIN:
                 break
-            found, widened = richer, wider_structure
         return found
+
+    def _without_surplus(self, rich: Match) -> Design:
+        """The design of the fewest control points that is predicted to leave hardly more than a rich match."""
+        model = self._model(rich)
+        candidates = eliminated(model, 0)
+        chosen = [each for each in candidates if each.rms <= NEAR_RICH * candidates[0].rms]
+        start = self._start(model, chosen[-1]) if chosen else None
+        return rich.design if start is None else start.design
 
     def of_size(self, rich: Match, most: int) -> Match:
         """The match of at most so many parameters that predictions lead to; the rich one where none can be built."""
@@ -240,7 +259,7 @@ class _Selection:
 
     def _built(self, match: Match) -> Match | None:
         """A match that can be built: where it is refused, one whose edge radii are kept further from what is."""
-        if not _refused(match):
+        if not is_refused(match):
             return match
         weights = match.problem.cloud_residuals.roots**2
         weights = np.where(weights > 0.0, weights, self.task.weights)
@@ -249,19 +268,19 @@ class _Selection:
             found = searched(task, match.design, noise=match.rms, rounds=1, min_reduction=ROUGH_REDUCTION)
         except FitError:
             return None
-        return None if _refused(found) else found
+        return None if is_refused(found) else found
 
     def well_predicted(self, rich: Match) -> Match:
         """The match of fewest parameters that is at the cloud's noise, or where its misfit is none, near everywhere."""
         model = self._model(rich)
         candidates = eliminated(model, 0)
-        # noise that is known takes the place of an aim (Morozov 1966)
-        noise = rich.noise_estimate.noise / model.chord * (1.0 + NOISE_QUANTILE / np.sqrt(2.0 * model.points))
-        nearest = min((each.largest for each in candidates), default=0.0)
-        aim = next((each for each in AIMS if nearest <= each), NEAR_RICH * nearest)
+        # what the rich match leaves is the noise, where its neighbours share none of it (Morozov 1966)
+        noise = (candidates[0].deviation if candidates else 0.0) * (1.0 + NOISE_QUANTILE / np.sqrt(2.0 * model.points))
+        nearest = NEAR_RICH * min((each.largest for each in candidates), default=0.0)
+        aim = max(NEAR if nearest <= EXACT else ENOUGH, nearest)
         near = max(_open_limit(rich), NEAR_RICH * largest_of(rich, rich))
         systematic = has_systematic_misfit(rich)
-        chosen = [each for each in candidates if (each.largest <= aim if systematic else each.rms <= noise)]
+        chosen = [each for each in candidates if (each.largest <= aim if systematic else each.deviation <= noise)]
         chosen = chosen or candidates[:1]
         tried: list[Match] = []
         for number in dict.fromkeys(int(share * (len(chosen) - 1)) for share in TRIED_SHARES if chosen):
@@ -280,13 +299,13 @@ class _Selection:
             return found
         weights = reweighted(self.task.weights, found.state.footpoints.distances, limit)
         nearer = nearest_to_tolerance(self.task, found, weights, rich, limit)
-        if largest_of(nearer, rich) > limit or _refused(nearer):
+        if largest_of(nearer, rich) > limit or is_refused(nearer):
             nearer, _ = self.within(rich, limit)
-        return nearer if largest_of(nearer, rich) < largest_of(found, rich) and not _refused(nearer) else found
+        return nearer if largest_of(nearer, rich) < largest_of(found, rich) and not is_refused(nearer) else found
 
     def within(self, rich: Match, tolerance: float) -> tuple[Match, str]:
         """The match of fewest parameters found that keeps a tolerance [m]; the nearest, and why, where none does."""
-        found = rich if largest_of(rich, rich) <= tolerance and not _refused(rich) else None
+        found = rich if largest_of(rich, rich) <= tolerance and not is_refused(rich) else None
         nearest = rich
         if has_systematic_misfit(rich) or largest_of(rich, rich) <= tolerance:
             tried = self._narrowed(rich, rich, tolerance)
@@ -364,15 +383,9 @@ class _Selection:
         return found
 
 
-def _refused(match: Match) -> bool:
-    """Whether a blade that searches allow is refused when it is built: its edge radii need a larger margin."""
-    if match.state.footpoints.points.shape[1] == 2:
-        return False
-    try:
-        match.design.build()
-    except DesignError:
-        return True
-    return False
+def _near_enough(rich: Match) -> bool:
+    """Whether a rich match of which nothing is asked is near enough: exact points are met more nearly."""
+    return rich.maximum <= (NEAR if is_exact(rich) else NEAR_EVERYWHERE) * rich.model.chord
 
 
 def _open_limit(rich: Match) -> float:
