@@ -16,7 +16,8 @@ Side = Curve | Surface
 """one side of a section or of a blade"""
 DEEP_SHARE, DEEP_EXTENT = 0.25, 1e-5
 """a point inside the blade is projected onto the other side too where it lies deeper than this share of the thickness
-there (`DEEP_SHARE`), and deeper than this share of the cloud's extent (`DEEP_EXTENT`), which keeps noise out."""
+there (`DEEP_SHARE`), and deeper than this share of the cloud's extent (`DEEP_EXTENT`), which keeps noise out
+(design/matching_constants.md)."""
 FACING = 0.999
 """cosine of the angle from which a normal faces a point: smooth sides do to rounding, and corners that turn by less
 than 3 deg leave a point a thousandth of its distance too near"""

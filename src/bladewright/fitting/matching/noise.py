@@ -19,29 +19,32 @@ from bladewright.numerics.robust import DEVIATION_OVER_MEDIAN, median_deviation
 from bladewright.nurbs.basis import Reals
 
 NEIGHBOURS = {2: 4, 3: 8}
-"""neighbours that a point is compared with, by dimension: two to each side of a curve, a ring on a surface."""
+"""neighbours that a point is compared with, by dimension: two to each side of a curve, a ring on a surface
+(design/matching_constants.md)."""
 OUTLYING_NOISE = 6.0
-"""distance of an outlier, in standard deviations of the noise: two of a billion normal points are so far off."""
+"""distance of an outlier, in standard deviations of the noise: two of a billion normal points are so far off
+(design/matching_constants.md)."""
 NEIGHBOUR_STEP = 5.0
 """largest difference of neighbours on one surface, in standard deviations of the noise."""
 OUTLYING_MISFIT, OUTLYING_MISFIT_AT_EDGES = 6.0, 60.0
 """distance of an outlier, in usual misfits of the design, and near an edge (`OUTLYING_MISFIT_AT_EDGES`), where misfits
-are large and neighbours are few. Lower values take points of an edge that is not yet found for outliers."""
+are large and neighbours are few. Lower values take points of an edge that is not yet found for outliers
+(design/matching_constants.md)."""
 MATCHED = 1.0 / 3.0
 """misfit, of the noise, below which distances are noise: it adds 5 % to their standard deviation."""
 STEEPER_THAN_AROUND = 4.0
 """ratio by which the misfit may become steeper than it is around a point."""
 EDGE_BAND = 0.03
-"""distance from an edge, in u, within which a point counts as near it."""
+"""distance from an edge, in u, within which a point counts as near it (design/matching_constants.md)."""
 SIDES_APART = 0.05
 """distance that the two sides of a thin blade are taken to have, of the extent, so that points of one are not
-neighbours of the other."""
+neighbours of the other (design/matching_constants.md)."""
 STEADY_MISFIT = 100.0
 """usual misfits beyond which a small group away from the edges is outlying though distances rise to it steadily, as on
 the end faces of a solid."""
 CHANCE_EXCESS = 3.0
 """excess of the usual distance over the noise by chance, in multiples of the noise over the root of the number of
-points."""
+points (design/matching_constants.md)."""
 LARGEST_GROUP, SMALL_GROUP = 0.05, 20
 """largest group of outliers, as a share of the points, but `SMALL_GROUP` points are always allowed."""
 END_BAND, WRONG_END_SHARE = 0.02, 0.2
@@ -53,12 +56,13 @@ LEVEL_SLOPE = 0.05
 """a point past an end is level with the sides up to this height per length past the end: the sides may bend there."""
 SPIKE_SLOPE, SPIKE_NEIGHBOURS = 2.0, 0.1
 """slope to all neighbours that no surface has (`SPIKE_SLOPE`), and height of the neighbours, of the point's own, up to
-which they lie on the surface (`SPIKE_NEIGHBOURS`)."""
+which they lie on the surface (`SPIKE_NEIGHBOURS`) (design/matching_constants.md)."""
 LARGEST_OUTLIER_SHARE = 0.15
 """share of outliers from which it is the design that lies off, and all points count as inliers."""
 LOCAL_POINTS, LOCAL_OVERLAP = 128, 16
 """points around a site whose noise and misfit are taken to be alike: a quartile of so many is known to 15 %, and few
-enough follow a scanner whose noise varies; and how many sites a point is around, about (`LOCAL_OVERLAP`)."""
+enough follow a scanner whose noise varies; and how many sites a point is around, about (`LOCAL_OVERLAP`)
+(design/matching_constants.md)."""
 DEVIATION_OVER_QUARTILE = 3.1384
 """standard deviation of normal noise over the lower quartile of its magnitude, 1 / Phi^-1(5/8): the points of an end
 face beside a side, half of all there, spoil it less than the median."""

@@ -27,7 +27,8 @@ from bladewright.section.laws import number_paths
 from bladewright.section.unified_limits import THICKNESSES
 
 SPREAD_ABOUT_START = 3.0
-"""spread of a parameter about its start, in its own scale. It only holds what nothing else does."""
+"""spread of a parameter about its start, in its own scale. It only holds what nothing else does
+(design/matching_constants.md)."""
 CHANNEL_SPREAD = 1.0
 """the same of control points of the meridional curves, which the cloud lets slide along their curves."""
 CORNER_SPREAD = 0.25
@@ -37,9 +38,10 @@ MERIDIANS = ("channel.", "flow_path.", "leading_edge.", "trailing_edge.")
 """beginnings of the paths of those, and of the edge curves and walls of blades from sections."""
 BEND_SPREAD = 0.5
 """spread of the second differences of a law, in the scale of its parameters. Smaller values straighten laws that the
-cloud bends."""
+cloud bends (design/matching_constants.md)."""
 CAMBER_SPREAD = 0.3
-"""spread of the difference of upper and lower thickness, in their scale: a camber line in the middle is preferred."""
+"""spread of the difference of upper and lower thickness, in their scale: a camber line in the middle is preferred
+(design/matching_constants.md)."""
 
 Terms = list[tuple[str, float]]
 """paths of parameters and their factors in a row"""
@@ -135,10 +137,10 @@ def paths_of(name: str, law: Any) -> list[list[str]]:
 
 EDGE_SHARE = 0.05
 """share of a cloud's points that show its edges: the rows that hold overhanging edges count as much as so many
-points."""
+points (design/matching_constants.md)."""
 USUAL_EDGE_HEIGHT = (0.8, 0.2)
 """usual height of the control point that sets an edge's radius, of the thickness beside it, and its spread. It is weak,
-and holds edge radii that no point shows."""
+and holds edge radii that no point shows (design/matching_constants.md)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -14,9 +14,10 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 
 SMALLEST_LENGTH = 2e-5
-"""smallest thickness and edge radius, of the chord: about what can be made, and far above rounding."""
+"""smallest thickness and edge radius, of the chord: about what can be made, and far above rounding
+(design/matching_constants.md)."""
 LARGEST_ANGLE = 89.0
-"""largest angle [deg]: at 90 deg the tangent that places the camber is infinite."""
+"""largest angle [deg]: at 90 deg the tangent that places the camber is infinite (design/matching_constants.md)."""
 
 
 class ParameterRange(NamedTuple):

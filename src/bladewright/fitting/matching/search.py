@@ -58,16 +58,18 @@ class BestSoFar:
 
 
 EVALUATIONS_PER_ROUND = 10
-"""evaluations of the surface in a round; after it knots, outliers and noise are updated."""
+"""evaluations of the surface in a round; after it knots, outliers and noise are updated
+(design/matching_constants.md)."""
 MOST_ROUNDS = 12
-"""rounds of a search at most: it bounds the time of a search that does not settle."""
+"""rounds of a search at most: it bounds the time of a search that does not settle (design/matching_constants.md)."""
 SETTLED_RATIO = 0.995
 """ratio of a round's misfit to the one before from which a search has settled."""
 ROUGH_REDUCTION = 0.01
 """predicted relative reduction of the cost that a step needs while a search is only one on the way: exact minima of
-intermediate structures are not needed."""
+intermediate structures are not needed (design/matching_constants.md)."""
 FAST_RATIO = 0.5
-"""ratio of misfits below which the next round is predicted to reduce the misfit as much again."""
+"""ratio of misfits below which the next round is predicted to reduce the misfit as much again
+(design/matching_constants.md)."""
 EXACT_MISFIT = 3e-14
 """misfit below which nothing is left to find, of the chord: rounding of the surfaces themselves."""
 NATIVE_TOLERANCE_OF_NOISE = 0.1

@@ -21,7 +21,7 @@ from bladewright.fitting.model_selection.structure import Counts, ResizableLaw, 
 from bladewright.nurbs.basis import Reals
 
 LARGEST_STEP = 3
-"""control points that a law loses or gains at a time at most."""
+"""control points that a law loses or gains at a time at most (design/matching_constants.md)."""
 RIDGE = {2: 0.0, 3: 0.01}
 """cost of a change of a parameter by its scale, of the sum of squares (Hoerl and Kennard 1970), by dimension:
 linearisations reach about so far. Without it predicted blades lie tens of scales away where points say little, and
@@ -230,14 +230,15 @@ class LinearModel:
 
 
 SURPLUS_DIVISOR = 12
-"""one in so many of the surplus parameters goes between two predictions."""
+"""one in so many of the surplus parameters goes between two predictions (design/matching_constants.md)."""
 CHEAP_LOSS = 3.0
-"""predicted loss for each parameter, of the least, up to which a law loses control points together with it."""
+"""predicted loss for each parameter, of the least, up to which a law loses control points together with it
+(design/matching_constants.md)."""
 REWEIGHTINGS = 12
-"""times that weights change for a prediction at most"""
+"""times that weights change for a prediction at most (design/matching_constants.md)"""
 PREDICTED, LARGEST_PREDICTED = 0.95, 1.5
 """largest predicted distance, of the tolerance, with which a structure is searched, and from which none is narrowed
-(`LARGEST_PREDICTED`)."""
+(`LARGEST_PREDICTED`) (design/matching_constants.md)."""
 
 
 def eliminated(model: LinearModel, least: int, tolerance: float | None = None) -> list[Prediction]:

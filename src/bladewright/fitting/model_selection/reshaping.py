@@ -176,11 +176,12 @@ def _has_shape(design: UnifiedSection | UnifiedBlade) -> bool:
 
 
 RICH_CHORDWISE = {2: 24, 3: 10}
-"""control points along the chord of a rich structure, by dimension."""
+"""control points along the chord of a rich structure, by dimension (design/matching_constants.md)."""
 RICH_SPAN = {"thickness": 6, "radius": 4, "tangent": 6, "": 8}
 """control points along the span of its laws, by what their names hold."""
 SHARES = (1.0, 0.8, 0.6, 0.4, 0.2, 0.0)
-"""shares of the further control points of a rich structure that are tried where points are few."""
+"""shares of the further control points of a rich structure that are tried where points are few
+(design/matching_constants.md)."""
 POINTS_PER_PARAMETER = 2
 """points for each parameter of a rich structure at least: published profiles have few points."""
 RICH_CHANNEL = (8, 8, 6, 6)

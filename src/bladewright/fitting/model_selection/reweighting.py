@@ -9,11 +9,12 @@ from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, se
 from bladewright.nurbs.basis import Reals
 
 WEIGHTED_DEVIATION = 0.8
-"""deviation, of the tolerance, from which a point's weight rises."""
+"""deviation, of the tolerance, from which a point's weight rises (design/matching_constants.md)."""
 WEIGHT_CHANGE, WEIGHT_RANGE = (0.5, 2.0), (0.02, 50.0)
-"""range by which the weight of a point changes at a time, and in all (`WEIGHT_RANGE`)."""
+"""range by which the weight of a point changes at a time, and in all (`WEIGHT_RANGE`)
+(design/matching_constants.md)."""
 REWEIGHTINGS = 6
-"""searches of one structure with other weights at most"""
+"""searches of one structure with other weights at most (design/matching_constants.md)"""
 TOUCHED = 0.05
 """excess over the tolerance, of it, that the last of these is foreseen to have where they go on: each reduces it by the
 same ratio as the one before."""

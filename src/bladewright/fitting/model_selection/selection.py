@@ -53,9 +53,9 @@ from bladewright.fitting.model_selection.reweighting import (
 from bladewright.fitting.model_selection.structure import Structure, structure_of
 
 GUESS_NOISE = 3e-3
-"""noise of the first round where the start is a guess, of the chord."""
+"""noise of the first round where the start is a guess, of the chord (design/matching_constants.md)."""
 QUICK_ROUNDS = 2
-"""rounds of a search on the way"""
+"""rounds of a search on the way (design/matching_constants.md)"""
 FINAL_REDUCTION = 1e-3
 """predicted relative reduction of the cost that a step of the last search needs."""
 QUICK_POINTS, SEVERAL_POINTS, THOROUGH_POINTS = 1000, 4000, 12_000
@@ -184,12 +184,14 @@ STAGES = 3
 NEAR_RICH = 1.25
 """largest distance that a match keeps whose misfit is no noise and of which nothing is asked, of that of a rich one."""
 NOISE_QUANTILE = 1.645
-"""standard errors by which a misfit may pass the noise, which one of pure noise does once in twenty times."""
+"""standard errors by which a misfit may pass the noise, which one of pure noise does once in twenty times
+(design/matching_constants.md)."""
 NEAR, ENOUGH = 0.5 * EXACT, 0.8 * NEAR_EVERYWHERE
 """largest distances, of the chord, that matches are predicted to have of which nothing is asked: where they can be
 exact, and else. They are parts of what is asked of the matches themselves, as predictions are linear."""
 TRIED_SHARES = (1.0, 0.75, 0.5, 0.25, 0.0)
-"""which of the structures that are predicted to do are searched, from that of fewest parameters, until one does"""
+"""which of the structures that are predicted to do are searched, from that of fewest parameters, until one does
+(design/matching_constants.md)"""
 RICHER_GAIN = 0.6
 """ratio of the misfits of two rich structures above which a richer one is of no use: a third as many control points
 again bring a cubic spline nearer by (3/4)^4, a third, half as many by a fifth (de Boor 1978, chapter 12)."""

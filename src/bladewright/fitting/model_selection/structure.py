@@ -22,7 +22,8 @@ CHANNEL_CURVES = ("leading_edge", "trailing_edge", "hub", "shroud")
 FEWEST_THICKNESSES = 3
 """control points of a thickness along the chord at least"""
 SPARE_SAMPLES = 4
-"""samples along the chord beyond a thickness's control points: fewer leave its law undetermined."""
+"""samples along the chord beyond a thickness's control points: fewer leave its law undetermined
+(design/matching_constants.md)."""
 MOST_SAMPLES = 60
 """samples along the chord at most"""
 MOST_CHORDWISE, MOST_SPAN, MOST_CURVE = MOST_SAMPLES - SPARE_SAMPLES, 12, 12
