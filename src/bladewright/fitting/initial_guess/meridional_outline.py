@@ -1,10 +1,14 @@
 """The meridional outline of a cloud: its boundary, and the four corners that divide it into smooth curves."""
 
 import numpy as np
-from scipy.spatial import Delaunay
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull, Delaunay
 
+from bladewright.numerics.elementary import cross2
 from bladewright.nurbs.basis import Reals
 
+LEAST_COVERED = 0.985
+"""share of the points that the outline must enclose"""
 RING_PLACES = 120
 """places of the boundary between which corners are sought; the search takes their cube in time
 (design/first_guesses.md)."""
@@ -27,52 +31,32 @@ def alpha_boundary(places: Reals) -> Reals:
     mesh = Delaunay(white)
     corners = white[mesh.simplices]
     a, b, c = (np.sqrt(np.sum((corners[:, i] - corners[:, j]) ** 2, axis=-1)) for i, j in ((0, 1), (1, 2), (2, 0)))
-    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    area = np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]) / 2.0
+    area = np.abs(cross2(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])) / 2.0
     radius = a * b * c / np.maximum(4.0 * area, 1e-12)
     low = float(np.median(np.min(np.stack([a, b, c]), axis=0)))
-    found: list[Reals] = []
     for alpha in np.geomspace(low, 50.0, 40):
         loop = _loop(mesh.simplices[radius < alpha], len(places))
         if loop is not None:
-            found.append(loop)
-            wide = _loop(mesh.simplices[radius < 1.8 * alpha], len(places))
-            loop = wide if wide is not None else loop
+            loop = _loop(mesh.simplices[radius < 1.8 * alpha], len(places)) or loop
             break
     else:
-        loop = np.asarray(mesh.convex_hull[:, 0])
-        order = np.argsort(np.arctan2(*(white[loop] - np.mean(white[loop], axis=0)).T[::-1]))
-        loop = loop[order]
+        loop = ConvexHull(white).vertices.tolist()
     line = places[loop]
-    x, y = line.T
-    turns = float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
-    return line if turns > 0.0 else line[::-1]
+    return line if np.sum(cross2(line, np.roll(line, -1, axis=0))) > 0.0 else line[::-1]
 
 
-def _loop(triangles: np.ndarray, count: int) -> np.ndarray | None:
+def _loop(triangles: NDArray[np.intp], count: int) -> list[int] | None:
     """The vertices of the single closed boundary of triangles that contain nearly all points, or None."""
-    if len(triangles) == 0:
+    edges = {(int(i), int(j)) for i, j in triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)}
+    # triangles are anticlockwise, so that two share an edge in both directions
+    outer = [(i, j) for i, j in edges if (j, i) not in edges]
+    following = dict(outer)
+    if not outer or len(following) < len(outer) or len(np.unique(triangles)) < LEAST_COVERED * count:
         return None
-    edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    edges, times = np.unique(edges, axis=0, return_counts=True)
-    outer = edges[times == 1]
-    if np.any(np.bincount(outer.ravel()) > 2):
-        return None
-    following: dict[int, list[int]] = {}
-    for i, j in outer:
-        following.setdefault(int(i), []).append(int(j))
-        following.setdefault(int(j), []).append(int(i))
-    loop = [int(outer[0, 0])]
-    before, now = -1, loop[0]
-    while True:
-        step = [k for k in following[now] if k != before][:1]
-        if not step or step[0] == loop[0]:
-            break
-        before, now = now, step[0]
-        loop.append(now)
-    if len(loop) != len(outer) or len(np.unique(triangles)) < 0.985 * count:
-        return None
-    return np.array(loop)
+    loop = [min(following)]
+    while following[loop[-1]] != loop[0]:
+        loop.append(following[loop[-1]])
+    return loop if len(loop) == len(outer) else None
 
 
 def corner_sets(line: Reals) -> list[list[Reals]]:
@@ -91,11 +75,10 @@ def corner_sets(line: Reals) -> list[list[Reals]]:
     cost = _costs(ring / spread) - CORNER_WORTH * _turns(ring / spread)[:, None]
     first = _best_cuts(cost)
     sets = [] if first is None else [first]
-    for start, end in zip(sets[0], [*sets[0][1:], sets[0][0] + RING_PLACES], strict=True) if sets else ():
+    near = np.arange(-NEAR_PLACES, NEAR_PLACES + 1)
+    for start, end in zip(first or (), np.roll(first or (), -1), strict=True):
         other = np.array(cost)
-        places = np.arange(start - NEAR_PLACES, start + NEAR_PLACES + 1) % RING_PLACES
-        steps = slice(max(0, end - start - 2 * NEAR_PLACES), end - start + 2 * NEAR_PLACES + 1)
-        other[places, steps] = np.inf
+        other[np.ix_((start + near) % RING_PLACES, (end + near) % RING_PLACES)] = np.inf
         cuts = _best_cuts(other)
         if cuts is not None and not any(_same(cuts, each) for each in sets):
             sets.append(cuts)
@@ -117,59 +100,36 @@ def _outermost(fine: Reals, cut: int) -> int:
     """The place of a ring near a cut that stands out most: the corner."""
     near = np.arange(cut - CORNER_REACH, cut + CORNER_REACH + 1)
     places = fine[near % len(fine)] - fine[(cut - CORNER_REACH) % len(fine)]
-    along = places[-1]
-    return int(near[np.argmax(places[:, 0] * along[1] - places[:, 1] * along[0])])
+    return int(near[np.argmax(cross2(places, places[-1]))])
 
 
 def _costs(ring: Reals) -> Reals:
-    """Squared distances (RING_PLACES, RING_PLACES + 1) left by cubics through pieces, by start and number of steps."""
-    result = np.full((RING_PLACES, RING_PLACES + 1), np.inf)
-    least = max(2, int(SHORTEST_CURVE * RING_PLACES))
-    around = np.concatenate([ring, ring])
-    for steps in range(least, RING_PLACES):
-        t = np.linspace(-1.0, 1.0, steps + 1)
-        q, _ = np.linalg.qr(np.vander(t, min(4, steps)))
+    """Squared distances (RING_PLACES, RING_PLACES) left by cubics through pieces, by their first and last place."""
+    result = np.full((RING_PLACES, RING_PLACES), np.inf)
+    around, first = np.concatenate([ring, ring]), np.arange(RING_PLACES)
+    for steps in range(max(2, int(SHORTEST_CURVE * RING_PLACES)), RING_PLACES):
+        q, _ = np.linalg.qr(np.vander(np.linspace(-1.0, 1.0, steps + 1), min(4, steps)))
         pieces = np.lib.stride_tricks.sliding_window_view(around, steps + 1, axis=0)[:RING_PLACES]
-        total = np.sum(pieces**2, axis=(1, 2))
-        result[:, steps] = np.maximum(total - np.sum((pieces @ q) ** 2, axis=(1, 2)), 0.0)
+        left = np.sum(pieces**2, axis=(1, 2)) - np.sum((pieces @ q) ** 2, axis=(1, 2))
+        result[first, (first + steps) % RING_PLACES] = np.maximum(left, 0.0)
     return result
 
 
 def _turns(ring: Reals, steps_apart: int = 4) -> Reals:
     """Angles (RING_PLACES,) [rad] by which the boundary turns left around each place, at most 1.2."""
     before, after = ring - np.roll(ring, steps_apart, axis=0), np.roll(ring, -steps_apart, axis=0) - ring
-    turn = np.arctan2(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], np.sum(before * after, axis=-1))
-    return np.clip(turn, 0.0, 1.2)
+    return np.clip(np.arctan2(cross2(before, after), np.sum(before * after, axis=-1)), 0.0, 1.2)
 
 
 def _best_cuts(cost: Reals) -> list[int] | None:
-    """The four cuts of the ring with the least sum of squared distances."""
-    steps = np.arange(RING_PLACES + 1)
-    best: tuple[float, list[int]] = (np.inf, [])
-    ahead = (np.arange(RING_PLACES)[:, None] + steps) % RING_PLACES
-    # from each start the least sum of two pieces, by their steps together, and where they are cut
-    two, cut = np.full((RING_PLACES, RING_PLACES + 1), np.inf), np.zeros((RING_PLACES, RING_PLACES + 1), dtype=int)
-    for first in range(1, RING_PLACES):
-        value = cost[:, [first]] + cost[ahead[:, first]][:, : RING_PLACES + 1 - first]
-        part = two[:, first:]
-        better = value < part
-        cut[:, first:][better] = first
-        two[:, first:] = np.minimum(part, value)
-    for start in range(RING_PLACES):
-        half = np.arange(2, RING_PLACES - 1)
-        total = two[start, half] + two[(start + half) % RING_PLACES, RING_PLACES - half]
-        i = int(np.argmin(total))
-        if total[i] < best[0]:
-            middle = int(half[i])
-            other = (start + middle) % RING_PLACES
-            cuts = [
-                start,
-                start + cut[start, middle],
-                start + middle,
-                start + middle + cut[other, RING_PLACES - middle],
-            ]
-            best = (float(total[i]), cuts)
-    if not best[1]:
-        return None
-    cuts = sorted(c % RING_PLACES for c in best[1])
-    return cuts
+    """The four cuts of the ring with the least sum of costs (n, n) from cut to cut, by pairs of neighbouring pieces."""
+    steps = (np.arange(RING_PLACES) - np.arange(RING_PLACES)[:, None]) % RING_PLACES
+    pair = cost[:, :, None] + cost
+    pair[steps[:, :, None] + steps != steps[:, None]] = np.inf
+    middle, least = np.argmin(pair, axis=1), np.min(pair, axis=1)
+    i, j = np.unravel_index(int(np.argmin(least + least.T)), least.shape)
+    return (
+        sorted([int(i), int(middle[i, j]), int(j), int(middle[j, i])])
+        if np.isfinite(least[i, j] + least[j, i])
+        else None
+    )
