@@ -236,7 +236,7 @@ of the span only."""
 SPANWISE_WEIGHT = 0.2
 """factor of distances along the edge while the nearest point is sought: a cloud may have few rows along the span."""
 NEIGHBOURS = 6
-"""points beside an edge whose distances from each other are looked at (design/matching_constants.md)."""
+"""points beside an edge whose distances from each other are looked at."""
 ALLOWED_SPACINGS, ALLOWED_SPACINGS_EXACT = 1.5, 15.0
 """allowed overhang in spacings of the points beside the edge, and in a cloud that is exact (`ALLOWED_SPACINGS_EXACT`),
 where the true edge must cost nothing even by chance: it had cost 2.4e-3 of the chord on an impeller and on Rotor 67
