@@ -67,6 +67,10 @@ SETTLED_RATIO = 0.995
 ROUGH_REDUCTION = 0.01
 """predicted relative reduction of the cost that a step needs while a search is only one on the way: exact minima of
 intermediate structures are not needed (design/matching_constants.md)."""
+REGULARISATION_DECAY = 0.5
+"""ratio of the noise that a round's regularisation is for to that of the round before, at most, where the misfit is
+systematic (iteratively regularised Gauss-Newton: Bakushinskii 1992). Held at the misfit, which it causes itself, it
+kept searches 7e-3 of the chord off (design/matching.md)."""
 FAST_RATIO = 0.5
 """ratio of misfits below which the next round is predicted to reduce the misfit as much again
 (design/matching_constants.md)."""
@@ -251,7 +255,10 @@ def searched(
         rounds_without_gain = rounds_without_gain + 1 if ratio**2 > min(SETTLED_RATIO**2, 1.0 - min_reduction) else 0
         if number and rounds_without_gain and (found.converged or rounds_without_gain > 1):
             break
+        last = found.rms if noise is None else noise
         noise = found.rms * (max(ratio, 1e-3) if ratio < FAST_RATIO else 1.0)
+        if has_systematic_misfit(found):
+            noise = min(noise, max(REGULARISATION_DECAY * last, found.noise_estimate.noise / found.model.chord))
     return found
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.assessment.acceptance import EXACT, NEAR_EVERYWHERE, MatchTarget
+from bladewright.fitting.assessment.acceptance import EXACT, GROSS_DEVIATION, NEAR_EVERYWHERE, MatchTarget
 from bladewright.fitting.assessment.estimates import undetermined_parameters
 from bladewright.fitting.free_parameters import corner_radii
 from bladewright.fitting.matching.search import (
@@ -92,6 +92,12 @@ def selected_match(
         noise=GUESS_NOISE if guessed else None,
         min_reduction=ROUGH_REDUCTION,
     )
+    if (
+        task.dimension == 2
+        and guessed
+        and np.max(found.state.footpoints.distances) > GROSS_DEVIATION[1] * found.model.chord
+    ):
+        found = min((found, *from_other_edges(several, found, GUESS_NOISE)), key=lambda each: each.mean_distance)
     if target.structured and target.tolerance is None:
         return _of_structure(several, many, found, like or structure_of(first), guessed=guessed), ""
     held = target.parameters is not None and bool(corner_radii(first)) and found.ends.in_rows(found.model.chord)
@@ -112,6 +118,7 @@ def selected_match(
     if len(rich.rows) < len(several.points):
         # no richer one has a shape, or none is needed: the first match, of few points, stands
         rich = evaluated(several, rich.design, noise=rich.rms)
+    rich = _without_false_outliers(several, rich)
     if target.parameters is not None:
         sized = selection.of_size(rich, target.parameters)
         found = sized if len(sized.problem.paths) <= target.parameters else found
@@ -123,6 +130,23 @@ def selected_match(
         confirmed = len(many.points) == len(several.points)
         return (found if confirmed else confirmed_match(many, found, target.tolerance)), reason
     return determined(many, found) if target.open else (_searched_further(many, found), reason)
+
+
+def _without_false_outliers(task: Task, match: Match) -> Match:
+    """The match of all points, where fewer than half as many are outliers of the design that it leads to.
+
+    A nose that is not found leaves its own points out, and what is searched without them never finds it.
+    """
+    if np.all(match.noise_estimate.inliers) or not has_systematic_misfit(match):
+        return match
+    every = replace(task, allow_outliers=False)
+    try:
+        found = searched(every, match.design, noise=match.rms, rounds=QUICK_ROUNDS + 1, min_reduction=ROUGH_REDUCTION)
+        found = evaluated(task, found.design, noise=found.rms)
+    except FitError:
+        return match
+    before, after = (np.count_nonzero(~each.noise_estimate.inliers) for each in (match, found))
+    return found if 2 * after < before else match
 
 
 def _searched_further(task: Task, match: Match) -> Match:
