@@ -123,7 +123,7 @@ def _first(task: Task, closed: Blade, kind: FitFamily, like: Any, header: Design
     found = replace(found, backwards=_backwards(found, kind, like, middle))
     band = _band(task, closed, float(START_SPANS[MIDDLE]))
     radius = found.values("leading_edge", START_SPANS)[:, 1]
-    tried = []
+    tried, refusal = [], None
     parts: list[Any] = [None if like is None else with_mean_laws(like.section)]
     for plane in _planes(found, like):
         flat = plane == UNROLLED
@@ -131,12 +131,21 @@ def _first(task: Task, closed: Blade, kind: FitFamily, like: Any, header: Design
         beside = unrolled(built[MIDDLE], band) if flat else band
         if found.backwards:
             shapes, beside = [each.reversed() for each in shapes[::-1]], beside * [-1.0, 1.0]
-        # the kind of part is chosen in the first plane
-        chosen = _matched(kind, shapes[MIDDLE], beside, kind.first_parts(shapes[MIDDLE], parts[0]))
-        matches = _along_span(kind, shapes[MIDDLE::-1], chosen)[::-1] + _along_span(kind, shapes[MIDDLE:], chosen)[1:]
+        try:
+            # the kind of part is chosen in the first plane
+            chosen = _matched(kind, shapes[MIDDLE], beside, kind.first_parts(shapes[MIDDLE], parts[0]))
+            matches = [
+                *_along_span(kind, shapes[MIDDLE::-1], chosen)[::-1],
+                *_along_span(kind, shapes[MIDDLE:], chosen)[1:],
+            ]
+        except FitError as error:
+            refusal = error
+            continue
         parts = [_part_of(each) for each in matches]
         tried.append((float(np.median([each.rms for each in matches])), plane, shapes, parts))
         parts = [_part_of(chosen)]
+    if not tried:
+        raise FitError(str(refusal)) from refusal
     _, plane, shapes, parts = min(tried, key=lambda each: each[0])
     chosen = parts[MIDDLE]
     counts = dict.fromkeys(counts_of(chosen), LAW_COUNT) if like is None else counts_of(like.section)
@@ -223,11 +232,17 @@ def _planes(found: ChannelCurves, like: Any) -> tuple[str, ...]:
 
 
 def _along_span(kind: FitFamily, shapes: list[SectionShape], first: Match) -> list[Match]:
-    """Matches of sections in a row, the first known: each begins as the one before, or as its shape says."""
+    """Matches of sections in a row, the first known: each begins as the one before, or as its shape says.
+
+    Where none of these has a shape, the one before stands.
+    """
     found = [first]
     for shape in shapes[1:]:
         before = _part_of(found[-1])
-        found.append(_matched(kind, shape, shape.outline, [before, *kind.first_parts(shape, before)]))
+        try:
+            found.append(_matched(kind, shape, shape.outline, [before, *kind.first_parts(shape, before)]))
+        except FitError:
+            found.append(found[-1])
     return found
 
 

@@ -71,6 +71,8 @@ REGULARISATION_DECAY = 0.5
 """ratio of the noise that a round's regularisation is for to that of the round before, at most, where the misfit is
 systematic (iteratively regularised Gauss-Newton: Bakushinskii 1992). Held at the misfit, which it causes itself, it
 kept searches 7e-3 of the chord off (design/matching.md)."""
+MENDING_ROUNDS = 3
+"""rounds of a search with points that a match left out: the rounds of a rich match"""
 FAST_RATIO = 0.5
 """ratio of misfits below which the next round is predicted to reduce the misfit as much again
 (design/matching_constants.md)."""
@@ -268,6 +270,23 @@ def evaluated(task: Task, design: Design, *, noise: float) -> Match:
     Raises FitError where it has no shape.
     """
     return _prepared_round(task, design, design, noise)
+
+
+def without_false_outliers(task: Task, match: Match) -> Match:
+    """A match of the same structure to all points, where half as many are outliers of the design that it leads to.
+
+    A nose that is not found leaves its own points out, and what is searched without them never finds it.
+    """
+    if np.all(match.noise_estimate.inliers) or not has_systematic_misfit(match):
+        return match
+    every = replace(task, allow_outliers=False)
+    try:
+        found = searched(every, match.design, noise=match.rms, rounds=MENDING_ROUNDS, min_reduction=ROUGH_REDUCTION)
+        found = evaluated(task, found.design, noise=found.rms)
+    except FitError:
+        return match
+    before, after = (np.count_nonzero(~each.noise_estimate.inliers) for each in (match, found))
+    return found if 2 * after < before else match
 
 
 def _prepared_round(

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.special import chdtri
 
 from bladewright.errors import DesignError, FitError
+from bladewright.fitting.assessment.acceptance import GROSS_DEVIATION
 from bladewright.fitting.matching.footpoints import Side
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
 from bladewright.fitting.model_selection.reshaping import with_feasible_edges
@@ -89,3 +90,10 @@ def from_other_edges(task: Task, match: Match, noise: float) -> Iterator[Match]:
             yield searched(task, with_feasible_edges(match.design.changed(changes)), noise=noise)
         except (DesignError, FitError):
             continue
+
+
+def trusted_or_from_other_edges(task: Task, match: Match, noise: float) -> Match:
+    """The match of a section, or where it is coarser than is trusted the nearest of it and those from other edges."""
+    if np.max(match.state.footpoints.distances) <= GROSS_DEVIATION[1] * match.model.chord:
+        return match
+    return min((match, *from_other_edges(task, match, noise)), key=lambda each: each.mean_distance)

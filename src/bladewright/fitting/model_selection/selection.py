@@ -15,7 +15,7 @@ import numpy as np
 
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.assessment.acceptance import EXACT, GROSS_DEVIATION, NEAR_EVERYWHERE, MatchTarget
+from bladewright.fitting.assessment.acceptance import EXACT, NEAR_EVERYWHERE, MatchTarget
 from bladewright.fitting.assessment.estimates import undetermined_parameters
 from bladewright.fitting.free_parameters import corner_radii
 from bladewright.fitting.matching.search import (
@@ -27,8 +27,9 @@ from bladewright.fitting.matching.search import (
     is_exact,
     is_refused,
     searched,
+    without_false_outliers,
 )
-from bladewright.fitting.model_selection.edges import from_other_edges, with_sharp_edges
+from bladewright.fitting.model_selection.edges import from_other_edges, trusted_or_from_other_edges, with_sharp_edges
 from bladewright.fitting.model_selection.elimination import (
     LARGEST_PREDICTED,
     PREDICTED,
@@ -75,7 +76,6 @@ DETERMINED_MARGIN, MOST_HOLDINGS = 1.5, 3
 """standard deviations that a determined direction of the parameters has in its own scale at least, more than one as the
 search that follows changes the residuals; and how often parameters are held at most (`MOST_HOLDINGS`)."""
 NOISE_REASON = "what is left is the cloud's own noise, {:.2g} mm: more control points would follow it"
-"""why a tolerance is not met"""
 
 
 def selected_match(
@@ -92,18 +92,12 @@ def selected_match(
         noise=GUESS_NOISE if guessed else None,
         min_reduction=ROUGH_REDUCTION,
     )
-    if (
-        task.dimension == 2
-        and guessed
-        and np.max(found.state.footpoints.distances) > GROSS_DEVIATION[1] * found.model.chord
-    ):
-        found = min((found, *from_other_edges(several, found, GUESS_NOISE)), key=lambda each: each.mean_distance)
+    found = trusted_or_from_other_edges(several, found, GUESS_NOISE) if task.dimension == 2 and guessed else found
     if target.structured and target.tolerance is None:
         return _of_structure(several, many, found, like or structure_of(first), guessed=guessed), ""
     held = target.parameters is not None and bool(corner_radii(first)) and found.ends.in_rows(found.model.chord)
     reason = CORNERS_HELD_NOTE if held else ""
-    if held:
-        several, many = _with_corners_held(several), _with_corners_held(many)
+    several, many = map(_with_corners_held, (several, many)) if held else (several, many)
     selection = _Selection(task=several, samples=(like or structure_of(first)).samples, first=found.design)
     if task.dimension == 3 and guessed:
         # laws that need no control points along the span begin as constants
@@ -118,7 +112,7 @@ def selected_match(
     if len(rich.rows) < len(several.points):
         # no richer one has a shape, or none is needed: the first match, of few points, stands
         rich = evaluated(several, rich.design, noise=rich.rms)
-    rich = _without_false_outliers(several, rich)
+    rich = without_false_outliers(several, rich)
     if target.parameters is not None:
         sized = selection.of_size(rich, target.parameters)
         found = sized if len(sized.problem.paths) <= target.parameters else found
@@ -130,23 +124,6 @@ def selected_match(
         confirmed = len(many.points) == len(several.points)
         return (found if confirmed else confirmed_match(many, found, target.tolerance)), reason
     return determined(many, found) if target.open else (_searched_further(many, found), reason)
-
-
-def _without_false_outliers(task: Task, match: Match) -> Match:
-    """The match of all points, where fewer than half as many are outliers of the design that it leads to.
-
-    A nose that is not found leaves its own points out, and what is searched without them never finds it.
-    """
-    if np.all(match.noise_estimate.inliers) or not has_systematic_misfit(match):
-        return match
-    every = replace(task, allow_outliers=False)
-    try:
-        found = searched(every, match.design, noise=match.rms, rounds=QUICK_ROUNDS + 1, min_reduction=ROUGH_REDUCTION)
-        found = evaluated(task, found.design, noise=found.rms)
-    except FitError:
-        return match
-    before, after = (np.count_nonzero(~each.noise_estimate.inliers) for each in (match, found))
-    return found if 2 * after < before else match
 
 
 def _searched_further(task: Task, match: Match) -> Match:
@@ -246,14 +223,13 @@ class _Selection:
 
         Where points are exact, or these are to be `slim`, a structure loses what it does not need before it is widened.
         """
-        found, points = match, len(self.task.points)
+        found, rounds = match, QUICK_ROUNDS + 1
         while found is match or (has_systematic_misfit(found) and not enough(found)):
             try:
-                about, slim = found.design, slim or is_exact(found)
-                about = self._without_surplus(found) if slim and found is not match else about
+                slim = slim or is_exact(found)
+                about = self._without_surplus(found) if slim and found is not match else found.design
                 widened = rich_structure if found is match else partial(wider_structure, slim=slim)
-                structure = widened(about, points)
-                design, rounds = with_feasible_edges(reshaped(about, structure)), QUICK_ROUNDS + 1
+                design = with_feasible_edges(reshaped(about, widened(about, len(self.task.points))))
                 richer = searched(self.task, design, noise=found.rms, rounds=rounds, min_reduction=ROUGH_REDUCTION)
             except (DesignError, FitError):
                 break
@@ -287,8 +263,8 @@ class _Selection:
         """A match that can be built: where it is refused, one whose edge radii are kept further from what is."""
         if not is_refused(match):
             return match
-        weights = match.problem.cloud_residuals.roots**2
-        weights = np.where(weights > 0.0, weights, self.task.weights)
+        roots = match.problem.cloud_residuals.roots
+        weights = np.where(roots > 0.0, roots**2, self.task.weights)
         task = replace(self.task, margin_factor=REFUSED_MARGIN * self.task.margin_factor, weights=weights)
         try:
             found = searched(task, match.design, noise=match.rms, rounds=1, min_reduction=ROUGH_REDUCTION)
