@@ -37,13 +37,22 @@ ROWS = {
     "clouds/walls.py": ("walls-compressor-stator", "walls-fan-rotor"),
     "clouds/cloud.py": ("aachen-annulus", "fan-two", "impeller-two", "ls89-suction"),
     "clouds": ("ls89-suction", "ls89-outliers", "compressor-outliers"),
-    "registration.py": ("aligned-compressor", "aligned-fan", "aligned-turbine", "prism-aachen"),
+    "registration.py": ("aligned-fan", "aligned-turbine", "prism-aachen"),
+    "placing.py": ("held-section",),
     "freeform": ("plain-curve", "plain-surface", "plain-profile"),
-    "families": ("Aachen2D-suction-pressure", "naca-sharp-noisy-profile", "opened-curvature-meanline-5"),
+    "initial_guess": ("guess-Rotor67", "guess-compressor-stator", "guess-radial-stator"),
+    "initial_guess/section.py": (*SECTIONS,),
+    "assessment": ("LS89-free", "ls89-half", "ls89-suction", "naca-blunt-noisy-unified", "naca-sharp-noisy-unified"),
+    "families": ("Aachen2D-suction-pressure", "naca-sharp-noisy-profile"),
     "families/segmented.py": ("example-morphing-airfoil",),
     "families/unified.py": (*SECTIONS, *BLADES),
     "families/flow_path.py": ("example-compressor-stator",),
     "families/blades.py": ("example-compressor-stator",),
+    "families/part_laws.py": ("example-compressor-stator", "Aachen2D-suction-pressure"),
+    "families/sections.py": ("example-compressor-stator", "Aachen2D-suction-pressure"),
+    "finishing.py": ("LS89-free",),
+    "fit.py": ("LS89-free",),
+    "matching/blade_ends.py": ("Aachen-parameters", "radial-diffuser-free"),
     "": (*SECTIONS, *BLADES),
 }
 """rows that are run for a file: of its own name, else of its room, else the last"""
@@ -155,6 +164,8 @@ def reached(name):
                 "parameters": len(fit.estimates),
                 "status": "passed" if fit.passed else "not passed",
                 "left out": len(fit.outliers),
+                "unknown": len(fit.unidentified),
+                "notes": len(fit.notes),
             }
         except bw.BladewrightError:
             found = {"far": None, "parameters": None, "status": "refused"}
@@ -212,7 +223,57 @@ def plain(kind):
     }
 
 
+def guessed(name):
+    """How far points are from the first blade that is found from them alone, in the mean, of its chord."""
+    import matching_clouds as clouds
+    import numpy as np
+    from foreign_blades import SHAPES
+    from matching_measures import away
+
+    from bladewright.errors import BladewrightError
+    from bladewright.fitting.initial_guess.blade import first_blade
+
+    if name in SHAPES:
+        cloud = clouds.Cloud(points=SHAPES[name]().points(np.random.default_rng(11)))
+    else:
+        cloud = clouds.measured(name) if name[0].isupper() else clouds.cloud_of(clouds.example(name))
+    since = time.process_time()
+    try:
+        built = first_blade(cloud.points).build()
+    except BladewrightError:
+        return {"far": None, "status": "refused", "parameters": None, "seconds": time.process_time() - since}
+    seconds = time.process_time() - since
+    far = away(cloud, built)
+    return {"far": far["mean"] / far["chord"], "status": "", "parameters": None, "seconds": seconds}
+
+
+def held(_):
+    """How far a moved section is from one that is held in its place, begun with other angles and a thicker side."""
+    import matching_clouds as clouds
+    import numpy as np
+    from matching_measures import away
+
+    import bladewright as bw
+    from bladewright.fitting.assessment.result import Motion
+
+    truth = clouds.example("turbine-section")
+    sides = truth.build().curves.values()
+    moved = Motion(rotation=np.array([[-0.6, -0.8], [0.8, -0.6]]), translation=np.array([0.3, -0.1]))
+    points = moved(np.concatenate([curve(np.linspace(0.0, 1.0, 150)) for curve in sides]))
+    thicker = {f"thickness_upper[{i}]": 1.06 * each for i, each in enumerate(truth.thickness_upper)}
+    angles = {"metal_angle_in": 1.05 * truth.metal_angle_in + 2.0, "metal_angle_out": 0.97 * truth.metal_angle_out}
+    since = time.process_time()
+    place = ("leading_edge_x", "leading_edge_y", "stagger")
+    fit = bw.fit(points, truth.changed(thicker | angles), align=True, fixed=place)
+    seconds = time.process_time() - since
+    far = away(clouds.Cloud(points=points), fit.built, fit.motion)
+    status = "passed" if fit.passed else "not passed"
+    return {"far": far["max"] / far["chord"], "parameters": len(fit.estimates), "status": status, "seconds": seconds}
+
+
 OWN = {
+    "guess": guessed,
+    "held": held,
     "walls": walls_told,
     "aligned": aligned,
     "prism": lambda machine: aligned(machine, started=False),

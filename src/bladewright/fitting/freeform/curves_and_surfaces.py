@@ -35,9 +35,6 @@ GRID_CELLS = 150
 (design/freeform.md)"""
 MOST_CELLS = 1500
 """cells of which all distances are compared; it bounds time and memory."""
-IN_ORDER_SHARE = 0.5
-"""share of points whose nearest point is next to them in the list, from which the list is an order: a list in no order
-has next to none."""
 MARGIN = 0.05
 """length, of the domain, by which the surface is continued past its edges while it moves (design/freeform.md)"""
 HELD_BY_BOUNDARY: dict[str, Literal["none", "corners", "boundary"]] = {
@@ -46,8 +43,6 @@ HELD_BY_BOUNDARY: dict[str, Literal["none", "corners", "boundary"]] = {
     "fixed": "boundary",
 }
 """control points that a boundary holds"""
-ON_A_LINE = 1e-9
-"""second extent of the points, of the first, below which they lie on a line."""
 
 
 @final
@@ -147,9 +142,10 @@ def sites_along(points: Reals, *, closed: bool) -> Reals:
 
 
 def _in_order(points: Reals) -> bool:
+    """Whether the nearest point of most is next to them in the list; in a list in no order, that of next to none is."""
     nearest, steps = cKDTree(points).query(points, k=2)[0][:, 1], np.diff(cumulative_length(points))
     beside = np.minimum(np.append(steps, np.inf), np.append(np.inf, steps))
-    return bool(np.mean(beside <= nearest * (1.0 + 1e-9)) >= IN_ORDER_SHARE)
+    return bool(np.median(beside - nearest * (1.0 + 1e-9)) <= 0.0)
 
 
 def _tree_path(points: Reals) -> Reals:
@@ -265,8 +261,9 @@ def _rectangle(points: Reals) -> Reals:
 
     One of its sides lies along one of the convex hull (Freeman and Shapira 1975); u runs along the longer side.
     """
-    _, size, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)
-    if size[1] <= ON_A_LINE * size[0]:
+    away = points - points.mean(axis=0)
+    axes = np.linalg.svd(away, full_matrices=False)[2]
+    if np.linalg.matrix_rank(away) < len(DIRECTIONS):
         raise FitError(f"the {len(points)} points lie on a line: a surface needs points beside it")
     plane = points @ axes[:2].T
     hull = plane[ConvexHull(plane).vertices]

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import block_diag
 from scipy.spatial import QhullError, cKDTree
 
+from bladewright.derivatives.complex_step import STEP
 from bladewright.errors import FitError
 from bladewright.fitting.freeform.fits import (
     FreeformFit,
@@ -36,10 +37,6 @@ THIRD_ABSCISSA = 0.0625
 """abscissa of the third control point of the thickness, of the chord (the source's section 4.2)"""
 SITES = np.linspace(0.0, 1.0, 201)
 """parameters of a side where searches for nearest places start, and of the camber between which abscissae are sought"""
-NEWTON_STEPS = 2
-"""Newton steps from there: to 1e-5, squared twice, with one more in each evaluation"""
-STEP = 1e-30
-"""imaginary step of a derivative, which is exact to rounding"""
 NOISE_MAXIMUM = 3.0
 """standard deviations of the points' noise that the largest of some hundred distances has by chance
 (design/freeform.md)"""
@@ -159,7 +156,8 @@ class CamberThickness(Shape):
         """Camber parameters (n,) at parameters u (n,) of the thickness, where the abscissae are the same."""
         abscissae = np.real(self.thickness(np.abs(np.real(u)))[:, 0])
         found = np.interp(abscissae, self._abscissae, SITES)
-        for _ in range(NEWTON_STEPS):
+        # from 1e-5, squared twice, and once more in each evaluation
+        for _ in range(2):
             place, slope = (np.real(each[:, 0]) for each in self.camber.derivatives(found, 1))
             found = np.clip(found - (place - abscissae) / np.maximum(slope, 1e-9), 0.0, 1.0)
         return found
