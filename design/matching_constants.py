@@ -414,7 +414,8 @@ in brackets. Bold, and first: by more than {matters} times. For most only rows i
 asked, Impulse with a tolerance, a noisy blunt profile), so that what blades in space alone need seems to have no
 effect. Rows of this script alone: `walls-`, share of a hub's, a fillet's and the sides' points that are taken for
 others (`walls.py`); `aligned-` and `prism-`, distance from their place of points that were moved; `plain-`, of the
-truth from plain fits (`freeform.py`).
+truth from plain fits (`freeform.py`); `guess-`, mean distance of the first blade; `held-`, of a moved section held in
+its place.
 
 | constant | value | what changes |
 |---|---|---|

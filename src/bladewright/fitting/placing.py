@@ -31,9 +31,10 @@ from bladewright.fitting.registration import (
 )
 
 MOST_REALIGNMENTS = 4
-"""realignments at most: a match follows each, and they bound the time to five matches"""
+"""realignments at most: a match follows each, and they bound the time to five matches (design/matching_constants.md)"""
 GAIN = 0.9
-"""ratio of the misfits after and before a realignment above which it is not worth a match"""
+"""ratio of the misfits after and before a realignment above which it is not worth a match
+(design/matching_constants.md)"""
 LONGEST_STEP = 0.2
 """longest step of the motion, of the cloud's extent, within which residuals and shape are nearly linear: some 10 deg"""
 ON_BOUND, WEAKEST_SLOPE = 1e-9, 1e-10

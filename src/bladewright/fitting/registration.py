@@ -32,7 +32,8 @@ SAMPLES = 8000
 """evenly spread samples, about a hundredth of the blade from each other: as near as true footpoints need to start"""
 LOOKED_AT, SEARCH_POINTS, DECIDING_POINTS = 20_000, 300, 3000
 """points of the cloud among which isolated ones are told, those that choose among the starts, and those that decide.
-They bound the time: the motion has six unknowns, and of 3000 points its noise is a fiftieth of theirs."""
+They bound the time: the motion has six unknowns, and of 3000 points its noise is a fiftieth of theirs
+(design/matching_constants.md)."""
 FOLLOWED_STARTS, TRIAL_STEPS = 2, 5
 """starts that are followed with true footpoints, and steps that choose among them"""
 POINT_STEPS, PLANE_STEPS, MOST_STEPS = 6, 24, 60
@@ -242,15 +243,15 @@ def composed(second: Motion, first: Motion) -> Motion:
 
 
 AXES_POINTS = 2000
-"""points that are looked at; it bounds the time."""
+"""points that are looked at; it bounds the time (design/matching_constants.md)."""
 PRISM_THICKNESS = 1e-3
 """thickness of a projection, of the cloud's extent, below which the cloud is a prism: a few times the noise of a
 scan."""
 NORMAL_NEIGHBOURS, CURVE_NEIGHBOURS = 12, 60
 """nearest points that a plane is laid through, and a parabola of the section, on which many stand above each other:
-with fewer, 16 x 10 points of a stator pass for a prism."""
+with fewer, 16 x 10 points of a stator pass for a prism (design/matching_constants.md)."""
 STEPS, SETTLED = 12, 1e-8
-"""steps of the least squares at most, and the last turn [rad]"""
+"""steps of the least squares at most, and the last turn [rad] (design/matching_constants.md)"""
 EDGE = 0.1
 """part of the chord whose thickness is that of an edge"""
 CURES = (

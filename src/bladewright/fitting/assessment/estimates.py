@@ -19,7 +19,8 @@ IDENTIFIED_SPREAD = 0.3
 """standard deviation, of a parameter's own scale, below which the cloud determines it. Its 95 % interval is then about
 one scale wide."""
 CORRELATED_POINTS, CORRELATED_NEIGHBOURS = 2000, 512
-"""points whose residuals are compared with those of their neighbours, and neighbours at most; they bound the time."""
+"""points whose residuals are compared with those of their neighbours, and neighbours at most; they bound the time: half
+and twice change nothing (design/matching_constants.md)."""
 FIRST_NEIGHBOURS, BY_CHANCE = 4, 2.0
 """neighbours that are compared first, twice as many each time, and standard errors that a correlation has by chance: 95
 in 100 are lower (Bartlett 1946)"""

@@ -29,7 +29,7 @@ PLACES: Reals = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 401))) / 2.0
 """s at which a side is sampled"""
 WINDOW = 0.05
 """length to both sides of a cut over which a side's slope and curvature are taken, of the chord: short enough for a
-polynomial of degree three, long enough for what points leave open [-]"""
+polynomial of degree three, long enough for what points leave open [-] (design/matching_constants.md)"""
 NOSE_WINDOWS, NOSE_DEGREE = (0.006, 0.012, 0.024), 5
 """lengths to both sides of the leading edge over which its direction and curvature are taken, of the chord, and the
 degree of the polynomials that give them (`NOSE_DEGREE`): tables may be irregular there [-]"""

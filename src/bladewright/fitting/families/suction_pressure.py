@@ -31,7 +31,7 @@ TEMPLATE = SuctionPressure(
 """the part whose structure is tried where none is given"""
 WEDGES = (25.0, 50.0, 75.0)
 """wedge angles of the leading edge that are tried [deg]: how far an edge extends is ambiguous, as the sides beside it
-may be taken for parts of it"""
+may be taken for parts of it (design/matching_constants.md)"""
 
 
 def first_parts(shape: SectionShape, like: SuctionPressure | None) -> Sequence[SuctionPressure]:

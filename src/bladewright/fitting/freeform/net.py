@@ -31,7 +31,8 @@ LAST_STEP = 1e-10
 """last step of a descent, in the parameters of a patch: distances of exact points are exact to it
 (design/freeform.md)"""
 KNOT_ROUNDS = 25
-"""times that knots are added at most; it bounds the time."""
+"""times that knots are added at most; it bounds the time: half and twice change nothing
+(design/matching_constants.md)."""
 NOISE_RATIO = 1.25
 """root mean square of a knot span's distances, of the noise, up to which they are noise: three standard errors of the
 root mean square of 70 distances (design/freeform.md)"""

@@ -27,11 +27,12 @@ from bladewright.section.checks import UNITS
 AXES_HINT = "x must be the machine axis: say which column is which (--columns), or name the axis (--axis)"
 """what may be wrong with a cloud near which no blade is found"""
 DRAWN_POINTS, SEARCHED_POINTS = 1200, 500
-"""points that show the outline and the slices, and points of the search (`SEARCHED_POINTS`); they bound the time."""
+"""points that show the outline and the slices, and points of the search (`SEARCHED_POINTS`); they bound the time
+(design/matching_constants.md)."""
 FEW = INITIAL_BLADES[1]
 """numbers of control points of the blade that is searched"""
 NOISE, ROUNDS = 0.03, 3
-"""noise assumed of a first blade, of the chord, and rounds of its search"""
+"""noise assumed of a first blade, of the chord, and rounds of its search (design/matching_constants.md)"""
 NEAR = 2e-3
 """mean distance, of the chord, with which no other outline is tried"""
 INLIER_SHARE = 0.94
@@ -136,7 +137,8 @@ than `CLEAR_ROW` of the span. Rows of Aachen's stator with noise scatter by 1.7e
 1.4e-3 on planes (design/matching.md)."""
 
 SPAN_POINTS = 600
-"""points by which the span's axis is told; it bounds the time."""
+"""points by which the span's axis is told; it bounds the time: half and twice change nothing
+(design/matching_constants.md)."""
 
 
 def arranged_channels(points: Reals, arrangement: Arrangement | None) -> tuple[Arrangement, list[SlicedChannel]]:

@@ -18,15 +18,15 @@ from bladewright.section.checks import UNITS
 from bladewright.section.unified import UnifiedSection
 
 DRAWN_POINTS = 600
-"""points that a first section is drawn through; it bounds the time."""
+"""points that a first section is drawn through; it bounds the time (design/matching_constants.md)."""
 TURNS: tuple[float, ...] = (0.0, 0.2, -0.2, 0.5, -0.5)
 """directions of the chord that are tried, from the longest distance between two points [rad]: that of a thick section
 may lie across it"""
 NEAR = 2e-3
-"""mean distance, of the chord, with which no other direction is tried"""
+"""mean distance, of the chord, with which no other direction is tried (design/matching_constants.md)"""
 NOISE, ROUNDS = 0.01, (5, 0)
 """noise assumed of a first section, of the chord, and rounds of its search: none where that leads to one that cannot be
-built"""
+built (design/matching_constants.md)"""
 
 
 def first_section(
