@@ -1,12 +1,17 @@
 """Edges around which a cloud has no points are said, and half a blade is known by them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from bladewright.fitting.assessment.coverage import uncovered_edges
+from bladewright.fitting.assessment.coverage import shape_bands, uncovered_edges
+from bladewright.fitting.assessment.estimates import parameter_estimates
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
+from bladewright.fitting.model_selection.reshaping import reshaped
+from bladewright.fitting.model_selection.structure import MOST_SPAN, rows_shown, structure_of
 from machines import example
 
 DESIGNS = {name: example(name) for name in ("turbine-section", "aachen-stator")}
@@ -45,3 +50,31 @@ def test_half_a_blade_does_not_pass_and_is_called_so():
     design = DESIGNS["turbine-section"]
     found = fit(cloud("turbine-section", 0.0, 0.5), start=design, free="leading_edge_x")
     assert any("half a blade" in failure for failure in found.failures)
+
+
+@pytest.mark.parametrize(("rows", "said"), [(4, True), (12, False)])
+def test_a_blade_that_is_measured_in_fewer_sections_than_its_laws_have_points_is_not_known_between_them(rows, said):
+    design, draw = DESIGNS["aachen-stator"], np.random.default_rng(0)
+    laws = structure_of(design)
+    design = reshaped(design, replace(laws, span={**laws.span, "stagger": 6}))
+    u = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 40))) / 2.0
+    places = np.meshgrid(u, np.linspace(0.0, 1.0, rows))
+    points = np.concatenate([np.real(side(*map(np.ravel, places))) for side in design.build().sides])
+    points += 2e-5 * draw.normal(size=points.shape)
+    free = free_parameters_of("stagger[*]", None, started=True)
+    found = searched(Task(points=points, weights=np.ones(len(points)), free=free, bounds={}), design, rounds=0)
+    _, _, v, bands = shape_bands(found, parameter_estimates(found))
+    assert bool(np.max(bands) > 1e-3 * found.model.chord) is said
+    # the rows themselves are known
+    assert np.max(bands[(v == 0.0) | (v == 1.0)]) < 1e-3 * found.model.chord
+
+
+@pytest.mark.parametrize(
+    ("v", "shown"), [(np.zeros(20), 1), (np.array([0.0, 0.33, 0.66, 0.99]), 4), (np.linspace(0.0, 1.0, 7), 7)]
+)
+def test_as_many_control_points_along_the_span_are_shown_as_there_are_rows(v, shown):
+    assert rows_shown(np.repeat(v, 30)) == shown
+
+
+def test_points_all_over_a_blade_show_as_many_control_points_as_a_law_may_have():
+    assert rows_shown(np.random.default_rng(0).random(1000)) == MOST_SPAN

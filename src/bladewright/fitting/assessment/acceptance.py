@@ -6,10 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from bladewright.fitting.assessment.coverage import (
+    NORMAL_95,
     foreign_edges,
-    least_known_place,
     least_thickness,
     loose_ends,
+    shape_bands,
     uncovered_edges,
 )
 from bladewright.fitting.assessment.estimates import ParameterEstimates
@@ -25,6 +26,11 @@ blades are milled."""
 GROSS_DEVIATION = (1.5e-3, 5e-3)
 """mean and largest deviation, of the chord, beyond which no match is trusted without a tolerance. A mean of 0.15 % on
 both sides of a turbine's throat of 0.3 chords changes it by 1 %; 0.5 % is half the radius of a usual leading edge."""
+KNOWN = 1e-3
+"""how near, of the chord, sides are to be known between the edges, and ends, where nothing is asked: 0.1 mm of 100 mm.
+Bands of matches that are as near are 8e-4 at most, of those that are off between their points 3e-3 at least
+(design/matching.md). Edges may be known to the largest deviation that is trusted: a sharp tip moves by more than its
+sides."""
 EXACT = 1e-4
 """largest deviation, of the chord, up to which nothing is said of how it goes on from point to point: exact points are
 matched to that."""
@@ -80,42 +86,52 @@ def failures_of(
             f"({measurement.regions[worst]}, point {worst}), and {with_unit(match.design, target.tolerance, 4)} were "
             "asked for"
         )
-    elif target.tolerance is None:
-        failures += _too_coarse(distances[inliers], match, target)
+    coarse = [] if target.tolerance is not None else _too_coarse(distances[inliers], match, target)
+    failures += coarse
     known = len(statistics.estimates) - _unknown_ends(statistics, match)
     if target.open and not match.interrupted and statistics.rank < known:
         failures.append(
             f"the points determine {statistics.rank} of the {len(statistics.estimates)} parameters: give more points, "
             "a number of parameters, or a tolerance"
         )
-    if target.open and not match.interrupted:
+    # what a match that is not found misses widens its bands
+    if target.open and not match.interrupted and not coarse:
         failures += _not_shown(statistics, match)
     failures += _partly_shown(match)
     return tuple(failures)
 
 
 def _not_shown(statistics: ParameterEstimates, match: Match) -> list[str]:
-    """Where a side of a section or an end of a blade is known less well than is trusted."""
-    chord = match.model.chord
-    limit = GROSS_DEVIATION[1] * chord
-    allowed = f"{100 * limit / chord:.2g} % of the chord are allowed"
-    if match.state.shape.exact is None:
-        side, u, half_width = least_known_place(match, statistics)
-        if half_width <= limit:
-            return []
-        known = f"known there to {with_unit(match.design, half_width, 2)} either way (95 %)"
-        said = f"the points do not show the {SIDES[side]} side at u = {u:.2g}: it is {known}"
-        return [f"{said}, and {allowed}: give more points there, a start, or fixed parameters"]
-    unknown = {name: gap for name, gap in loose_ends(match).items() if gap > limit}
-    said = _loose_ends_message(match, unknown)
-    return [f"{said}, and {allowed}: give points there, or hold the channel"] if unknown else []
+    """Where a side, an edge or an end is known less well than is trusted, and than one point there would show it."""
+    chord, one_point = match.model.chord, NORMAL_95 * match.noise_estimate.noise
+    ends, edges = max(KNOWN * chord, one_point), max(GROSS_DEVIATION[1] * chord, one_point)
+    side, u, v, half_widths = shape_bands(match, statistics)
+    limits = np.where(np.minimum(u, 1.0 - u) < BETWEEN_EDGES, edges, ends)
+    worst = int(np.argmax(half_widths / limits))
+    found = []
+    if half_widths[worst] > limits[worst]:
+        place = f"u = {u[worst]:.2g}" + ("" if match.state.shape.exact is None else f", v = {v[worst]:.2g}")
+        known = f"known there to {with_unit(match.design, float(half_widths[worst]), 2)} either way (95 %)"
+        found.append(
+            f"the points do not show the {SIDES[side[worst]]} side at {place}: it is {known}, and "
+            f"{100 * limits[worst] / chord:.2g} % of the chord are allowed: is it a whole blade? Give more points "
+            "there, a start, a number of parameters or a tolerance"
+        )
+    unknown = {name: gap for name, gap in loose_ends(match).items() if gap > ends}
+    if unknown:
+        found.append(
+            f"{_loose_ends_message(match, unknown)}, and {100 * ends / chord:.2g} % of the chord are allowed: give "
+            "points there, hold hub and shroud, or state a tolerance"
+        )
+    return found
 
 
 def _unknown_ends(statistics: ParameterEstimates, match: Match) -> int:
     """Number of parameters that are not determined because no row of points shows where the blade ends: a note."""
     if not loose_ends(match):
         return 0
-    return sum(1 for each in statistics.estimates if each.path.startswith("channel.") and not each.identified)
+    unknown = (each.path for each in statistics.estimates if not each.identified)
+    return sum(path.startswith(("channel.", "flow_path.")) for path in unknown)
 
 
 def _too_coarse(kept: Reals, match: Match, target: MatchTarget) -> list[str]:

@@ -21,8 +21,8 @@ ROW_SPREAD = 1e-4
 (`ROW_SPREAD_OF_NOISE`): a noisy row is a row."""
 ROW_SPREAD_OF_NOISE = 2.0
 """the same, of the cloud's noise: a noisy row is a row all the same."""
-GAP_OVER_SPREAD = 2.7
-"""mean distance of evenly scattered values times their number, over their deviation by the median."""
+WIDTH_OVER_SPREAD = 2.7
+"""width of evenly scattered values over 1.4826 times the median of their distances from the middle"""
 EDGE_PARAMETERS = {"leading edge": 0.0, "trailing edge": 1.0}
 """u of the two edges"""
 SPAN_PARTS = 5
@@ -40,8 +40,9 @@ UNKNOWNS, ROUND_UNKNOWNS = 6, 5
 """place, half width and turn of a face, and the slopes of both sides; place and radius of an arc, and these slopes"""
 SHARES = (0.9, 0.5, 0.1)
 """widths from which a face and an arc are fitted, of the half height of their points"""
-PLACES = 41
-"""places along each side of a section, closer at the edges, at which it is asked how well it is known"""
+PLACES = {2: (41, 1), 3: (21, 11)}
+"""places along each side, closer at the edges, and along the span at which it is asked how well the shape is known, by
+dimension; they bound the time"""
 NORMAL_95 = 1.96
 """standard deviations to either side within which 95 % of normal errors are [-]"""
 CONFIDENCE = 0.999
@@ -49,12 +50,14 @@ CONFIDENCE = 0.999
 
 
 def loose_ends(match: Match) -> dict[str, float]:
-    """The ends of a blade that no row of points shows, and how far apart the points are there [m].
+    """The ends of a blade that no row of points shows, and how far past the outermost points they may be [m].
 
-    Empty for sections, and where the channel is held. The sides of a blade that goes on a little further are the same,
-    so that without a row only its outermost points tell where it ends.
+    Empty for sections, and where the walls are held. The sides of a blade that goes on a little further are the same,
+    so that without a row only its outermost points tell where it ends. Of m values that are scattered evenly the
+    outermost is 1 / m of their width from the end on average, and each of the k free parameters of a wall has 1 / k of
+    the points beside it. Reference: David and Nagaraja 2003, section 2.5 (order statistics of even values).
     """
-    if match.state.shape.exact is None or not any(path.startswith("channel.") for path in match.problem.paths):
+    if match.state.shape.exact is None:
         return {}
     chord, walls = match.model.chord, match.ends.walls
     loose = {}
@@ -67,7 +70,7 @@ def loose_ends(match: Match) -> dict[str, float]:
         if wall is None or len(wall.places) <= len(free):
             loose[name] = chord
         elif wall.spread > max(ROW_SPREAD * chord, ROW_SPREAD_OF_NOISE * match.noise_estimate.noise):
-            loose[name] = GAP_OVER_SPREAD * wall.spread / len(wall.places)
+            loose[name] = WIDTH_OVER_SPREAD * wall.spread * len(free) / len(wall.places)
     return loose
 
 
@@ -95,19 +98,20 @@ def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:
     return uncovered
 
 
-def least_known_place(match: Match, statistics: ParameterEstimates) -> tuple[int, float, float]:
-    """The place of a section that the points show least: side, u, and half its 95 % interval along the normal [m].
+def shape_bands(match: Match, statistics: ParameterEstimates) -> tuple[NDArray[np.intp], Reals, Reals, Reals]:
+    """Sides, u and v (n,) of places all over a design, and half the 95 % intervals along the normals there [m].
 
     By the derivatives of places by the free parameters, and these parameters' covariance. Reference: Bates and Watts
     1988, section 2.3.2 (inference bands for the expected response).
     """
-    side, u = np.repeat([0, 1], PLACES), np.tile((1.0 - np.cos(np.linspace(0.0, np.pi, PLACES))) / 2.0, 2)
-    at = footpoints_at(np.zeros((len(u), 2)), match.state.shape.sides, side, u, np.zeros(len(u)))
+    dimension = match.problem.cloud_residuals.points.shape[1]
+    along, across = PLACES[dimension]
+    places = [0, 1], (1.0 - np.cos(np.linspace(0.0, np.pi, along))) / 2.0, np.linspace(0.0, 1.0, across)
+    side, u, v = (each.ravel() for each in np.meshgrid(*places, indexing="ij"))
+    at = footpoints_at(np.zeros((len(u), dimension)), match.state.shape.sides, side, u, v)
     slopes = match.model.along(match.state.shape, at, at.normals, match.problem.paths)
-    variances = np.einsum("nk,kj,nj->n", slopes, statistics.covariance, slopes)
-    half_widths = NORMAL_95 * np.sqrt(np.maximum(variances, 0.0))
-    worst = int(np.argmax(half_widths))
-    return int(side[worst]), float(u[worst]), float(half_widths[worst])
+    variances = np.einsum("nk,nk->n", slopes @ statistics.covariance, slopes)
+    return side, u, v, NORMAL_95 * np.sqrt(np.maximum(variances, 0.0))
 
 
 def least_thickness(match: Match) -> float:

@@ -13,12 +13,14 @@ from bladewright.errors import DesignError, FitError
 from bladewright.fitting.matching.search import COARSEST_TOLERANCE
 from bladewright.fitting.model_selection.structure import (
     COMPARED_PLACES,
+    MOST_SPAN,
     SPANWISE,
     Structure,
     law_field,
     resizable_laws,
     samples_of,
     structure_of,
+    within_rows,
 )
 from bladewright.fitting.models.model import model_of
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
@@ -188,15 +190,19 @@ RICH_CHANNEL = (8, 8, 6, 6)
 """control points of the edges, of hub and of shroud."""
 
 
-def rich_structure(design: Design, points: int) -> Any:
-    """A structure with more control points in every law than a match of so many points is likely to need."""
-    return _towards(richest(design), design, points)
+def rich_structure(design: Design, points: int, rows: int = MOST_SPAN) -> Any:
+    """A structure with more control points in every law than a match of so many points is likely to need.
+
+    Along the span it has no more of them than `rows` of points.
+    """
+    return _towards(richest(design), design, points, rows)
 
 
-def wider_structure(design: Design, points: int, *, slim: bool = False) -> Any:
+def wider_structure(design: Design, points: int, rows: int = MOST_SPAN, *, slim: bool = False) -> Any:
     """A structure with a third as many control points again in every law of a design, and a rich one at least.
 
-    Of one that is `slim`, which has lost what it does not need, half as many again and no more.
+    Along the span it has no more of them than `rows` of points. Of a structure that is `slim`, which has lost what it
+    does not need, half as many again and no more.
     """
     own = structure_of(design)
     wide, share = (own, 2) if slim else (richest(design), 3)
@@ -204,12 +210,12 @@ def wider_structure(design: Design, points: int, *, slim: bool = False) -> Any:
         counts = zip(law.counts(own), law.counts(wide), law.limits()[1], strict=True)
         more = (max(few, min(count + max(1, count // share), most)) for count, few, most in counts)
         wide = law.resized(wide, tuple(more))
-    return _towards(wide, design, points)
+    return _towards(wide, design, points, rows)
 
 
-def _towards(whole: Any, design: Design, points: int) -> Any:
+def _towards(whole: Any, design: Design, points: int, rows: int) -> Any:
     """A structure with more control points than a design's own, or as large a share of them as the points allow."""
-    own = structure_of(design)
+    whole, own = (within_rows(each, design, rows) for each in (whole, structure_of(design)))
     for share in SHARES:
         rich = own
         for law in resizable_laws(design):

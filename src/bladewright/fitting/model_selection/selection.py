@@ -51,7 +51,7 @@ from bladewright.fitting.model_selection.reweighting import (
     nearest_to_tolerance,
     reweighted,
 )
-from bladewright.fitting.model_selection.structure import Structure, structure_of
+from bladewright.fitting.model_selection.structure import Structure, rows_shown, structure_of
 
 GUESS_NOISE = 3e-3
 """noise of the first round where the start is a guess, of the chord (design/matching_constants.md)."""
@@ -212,11 +212,9 @@ class _Selection:
         """Whether a match of the same structure is predicted to keep a tolerance [m] where points are weighed so."""
         if match.maximum <= tolerance:
             return True
-        model = self._model(match)
-        prediction, relative = model.prediction(model.counts), tolerance / model.chord
-        return prediction is not None and (
-            reweighted_prediction(model, prediction, relative).largest <= PREDICTED * relative
-        )
+        model, relative = self._model(match), tolerance / match.model.chord
+        found = model.prediction(model.counts)
+        return found is not None and reweighted_prediction(model, found, relative).largest <= PREDICTED * relative
 
     def rich(self, match: Match, enough: Callable[[Match], bool], *, slim: bool) -> Match:
         """The match of a rich structure, and of ever richer ones until one is near enough or comes hardly nearer.
@@ -224,12 +222,13 @@ class _Selection:
         Where points are exact, or these are to be `slim`, a structure loses what it does not need before it is widened.
         """
         found, rounds = match, QUICK_ROUNDS + 1
+        shown = len(self.task.points), rows_shown(match.state.footpoints.v[match.rows])
         while found is match or (has_systematic_misfit(found) and not enough(found)):
             try:
                 slim = slim or is_exact(found)
                 about = self._without_surplus(found) if slim and found is not match else found.design
                 widened = rich_structure if found is match else partial(wider_structure, slim=slim)
-                design = with_feasible_edges(reshaped(about, widened(about, len(self.task.points))))
+                design = with_feasible_edges(reshaped(about, widened(about, *shown)))
                 richer = searched(self.task, design, noise=found.rms, rounds=rounds, min_reduction=ROUGH_REDUCTION)
             except (DesignError, FitError):
                 break
@@ -343,7 +342,8 @@ class _Selection:
     def _widened(self, match: Match) -> Match:
         """A match with more control points in every law, not searched, or the same where that leaves it no shape."""
         try:
-            design = reshaped(match.design, wider_structure(match.design, len(self.task.points)))
+            rows = rows_shown(match.state.footpoints.v[match.rows])
+            design = reshaped(match.design, wider_structure(match.design, len(self.task.points), rows))
             return searched(self.task, design, noise=match.rms, rounds=0)
         except (DesignError, FitError):
             return match

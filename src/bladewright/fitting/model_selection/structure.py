@@ -115,6 +115,8 @@ class ResizableLaw(ABC):
     """its name in a structure"""
     holds_corners: ClassVar[bool] = False
     """whether it may change though some of its parameters, the corners of a channel, are held"""
+    along_span: ClassVar[tuple[int, ...]] = (-1,)
+    """places of the numbers along the span among its counts"""
 
     @abstractmethod
     def counts(self, structure: Any) -> Counts:
@@ -192,6 +194,7 @@ class ChannelCurves(ResizableLaw):
     degree: int
     """highest degree of the curves"""
     holds_corners: ClassVar[bool] = True
+    along_span: ClassVar[tuple[int, ...]] = (0, 1)
 
     def counts(self, structure: Structure) -> Counts:
         return tuple(structure.channel[name] for name in CHANNEL_CURVES)
@@ -230,6 +233,26 @@ def resizable_laws(design: Any) -> list[ResizableLaw]:
     laws: list[ResizableLaw] = [ThicknessLaw(name) for name in THICKNESSES if name not in structure.stations]
     laws += [SpanLaw(name) for name in structure.span if name not in THICKNESSES and name not in structure.stations]
     return [*laws, ChannelCurves("channel", design.channel.degree)] if structure.channel else laws
+
+
+def rows_shown(v: Reals) -> int:
+    """How many control points along the span points at v (n,) show: the most equal parts of it of which each has some.
+
+    A spline's control points are determined where each basis function has a place of its own (Schoenberg and Whitney
+    1953): a blade that is measured in four sections determines four.
+    """
+    counts = range(MOST_SPAN, 1, -1)
+    return next((n for n in counts if len(np.unique(np.minimum((n * v).astype(int), n - 1))) == n), 1)
+
+
+def within_rows(structure: Any, design: Any, rows: int) -> Any:
+    """A structure with no more control points along the span than rows, but the fewest that its laws may have."""
+    for law in resizable_laws(design):
+        counts, least = list(law.counts(structure)), law.limits()[0]
+        for place in law.along_span:
+            counts[place] = max(min(counts[place], rows), least[place])
+        structure = law.resized(structure, tuple(counts))
+    return structure
 
 
 def samples_of(structure: Structure) -> Reals:
