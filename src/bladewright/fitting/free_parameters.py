@@ -88,7 +88,10 @@ def _in_flow_path(design: UnifiedBlade) -> frozenset[str]:
 
 
 def _across_walls(design: SectionedBlade) -> frozenset[str]:
-    """For every point of hub and shroud the coordinate, x or r, across which the wall runs there."""
+    """For every point of hub and shroud the coordinate, x or r, across which the wall runs there.
+
+    Where points at equal fractions of whole walls are joined, the shroud's ends decide which these are, and are free.
+    """
     found = set()
     for wall in WALLS:
         curve = getattr(design.flow_path, wall)
@@ -97,6 +100,9 @@ def _across_walls(design: SectionedBlade) -> frozenset[str]:
             way = np.gradient(points, axis=0) ** 2
             across = np.where(way[:, 0] >= way[:, 1], "r", "x")
             found |= {f"flow_path.{wall}.points[{i}].{name}" for i, name in enumerate(across)}
+    if design.flow_path.matched == "ends" and isinstance(design.flow_path.shroud, ThroughPoints):
+        last = len(design.flow_path.shroud.points) - 1
+        found |= {f"flow_path.shroud.points[{i}].{name}" for i in (0, last) for name in "xr"}
     return frozenset(found)
 
 

@@ -169,7 +169,7 @@ def _first(task: Task, closed: Blade, kind: FitFamily, like: Any, header: Design
     fields[name] = nearest_law(place, START_SPANS, given)
     if like is None:
         fields |= {edge: found.edge(edge, metre) for edge in EDGES}
-        fields |= {"flow_path": found.flow_path(metre), "plane": plane}
+        fields |= {"flow_path": found.flow_path(metre, revolved=not linear), "plane": plane}
         return [kind.blade(**fields, section=part) for part in sections]
     fields |= {edge: found.edge_like(edge, getattr(like, edge), metre) for edge in EDGES}
     return [with_stations_of(replace(like, **fields, section=sections[0]), like)]

@@ -1,6 +1,7 @@
 """The flow path and the edge curves of a blade from sections, as a closed blade in a channel shows them."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -9,9 +10,10 @@ from scipy.spatial import cKDTree
 
 from bladewright.blade.design.flow_path import FlowPath
 from bladewright.blade.design.meridional_curve import ControlPolygon, Meridian, ThroughPoints
+from bladewright.blade.flow_path.stream_surfaces import stream_surfaces
 from bladewright.blade.native.blade import Blade
 from bladewright.designs import Point
-from bladewright.errors import FitError
+from bladewright.errors import DesignError, FitError
 from bladewright.fitting.free_parameters import WALLS
 from bladewright.numerics.elementary import cumulative_length, unit
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
@@ -23,8 +25,8 @@ WALL_DISTANCE = 0.01
 better known, and they are parameters."""
 WALL_MARGIN = 0.1
 """distance ahead of and behind the blade of the first and last of these points, of its length."""
-CONTINUATION = 0.8
-"""length of the straight continuation at whose end a point stands, of the wall's length."""
+CONTINUATIONS = (0.8, 0.4, 0.2)
+"""lengths of the straight continuations at whose ends points stand, of the wall's length: the first that does not fold."""
 LEAST_RADIUS = 0.6
 """share of the radius at its end that the continuation may lose: it must not meet the axis."""
 EDGE_POINTS = 4
@@ -54,10 +56,21 @@ class ChannelCurves:
             name, at = OPPOSITE_CURVE[name], 1.0 - at
         return np.asarray(np.real(channel.line(name).values(at)))
 
-    def flow_path(self, metre: float) -> FlowPath:
-        """Hub and shroud, continued straight; fractions count from edge to edge."""
-        hub, shroud = (ThroughPoints(points=_points(_wall(self.values(name, CURVE_PLACES)), metre)) for name in WALLS)
-        return FlowPath(hub=hub, shroud=shroud, matched="edges")
+    def flow_path(self, metre: float, *, revolved: bool) -> FlowPath:
+        """Hub and shroud, continued straight by equal parts of their lengths, so that the blade's ends match.
+
+        How far they are continued says which points of them are joined, which is a parameter. Where these surfaces
+        fold, fractions count from edge to edge.
+        """
+        lines = [self.values(name, CURVE_PLACES) for name in WALLS]
+        for longest in CONTINUATIONS:
+            shares = np.min([_shares_off_axis(line, longest) for line in lines], axis=0)
+            hub, shroud = (ThroughPoints(points=_points(_wall(line, shares), metre)) for line in lines)
+            path = FlowPath(hub=hub, shroud=shroud)
+            with suppress(DesignError):
+                stream_surfaces(path, metre, revolved=revolved)
+                return path
+        return replace(path, matched="edges")
 
     def edge(self, name: str, metre: float) -> ThroughPoints:
         """An edge as a curve through a few points that reaches past both walls."""
@@ -93,13 +106,12 @@ class ChannelCurves:
         return replace(curve, **{field: _points(found, metre)})
 
 
-def _wall(line: Reals) -> Reals:
-    """Points of a wall, a line (n, 2) continued straight: as few as follow it within `WALL_DISTANCE`."""
+def _wall(line: Reals, shares: Reals) -> Reals:
+    """Points of a wall, a line (n, 2) continued straight by shares (2,) of it: as few as follow it."""
     way = cumulative_length(line)
     size = float(way[-1])
-    first, last = unit(line[0] - line[1]), unit(line[-1] - line[-2])
-    ends = [size * _share_off_axis(end[1], size * out[1]) * out for end, out in ((line[0], first), (line[-1], last))]
-    longer = np.concatenate([[line[0] + ends[0] * CONTINUATION], line, [line[-1] + ends[1] * CONTINUATION]])
+    ends = shares[:, None] * size * _outward(line)
+    longer = np.concatenate([[line[0] + ends[0]], line, [line[-1] + ends[1]]])
     along = cumulative_length(longer)
     low, high = along[1] - WALL_MARGIN * size, along[-2] + WALL_MARGIN * size
     rows = longer
@@ -113,9 +125,16 @@ def _wall(line: Reals) -> Reals:
     return rows
 
 
-def _share_off_axis(radius: float, slope: float) -> float:
-    """The share of a straight continuation that keeps off the axis."""
-    return 1.0 if slope >= 0.0 else min(1.0, LEAST_RADIUS * radius / (-slope * CONTINUATION))
+def _outward(line: Reals) -> Reals:
+    """The directions (2, 2) in which a line leaves its ends."""
+    return np.stack([unit(line[0] - line[1]), unit(line[-1] - line[-2])])
+
+
+def _shares_off_axis(line: Reals, longest: float) -> Reals:
+    """The shares (2,) of a line's length by which it may be continued at its ends, so as to keep off the axis."""
+    fall = -float(cumulative_length(line)[-1]) * _outward(line)[:, 1]
+    radius = np.maximum(line[[0, -1], 1], 0.0)
+    return np.where(fall > 0.0, np.minimum(longest, LEAST_RADIUS * radius / np.where(fall > 0.0, fall, 1.0)), longest)
 
 
 def _extended(line: Reals, times: float = 1.0) -> Reals:
