@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.designs import Point
 from bladewright.fitting.families import blades
-from bladewright.fitting.families.flow_path import CONTINUATION, WALL_COUNTS, WALL_DISTANCE, WALL_MARGIN, _wall
+from bladewright.fitting.families.flow_path import CONTINUATIONS, WALL_COUNTS, WALL_DISTANCE, WALL_MARGIN, _wall
 from bladewright.fitting.free_parameters import FreeParameters, gauge_parameters
 from bladewright.fitting.matching.blade_ends import WallPoints
 from bladewright.fitting.matching.footpoints import nearest_footpoints
@@ -26,8 +26,11 @@ VANE = replace(DIFFUSER, tolerance=1e-3)
 def test_walls_that_are_free_slide_along_themselves_only():
     free = set(FreeParameters(walls=True)(VANE))
     walls = {path for path in free if path.startswith("flow_path.")}
-    # its walls stand radially, at one x each
-    assert walls == {f"flow_path.{wall}.points[{i}].x" for wall in ("hub", "shroud") for i in (0, 1)}
+    # its walls stand radially, at one x each; the shroud's ends say which points of both walls are joined
+    across = {f"flow_path.{wall}.points[{i}].x" for wall in ("hub", "shroud") for i in (0, 1)}
+    assert walls == across | {f"flow_path.shroud.points[{i}].r" for i in (0, 1)}
+    edges = replace(VANE, flow_path=replace(VANE.flow_path, matched="edges"))
+    assert {path for path in FreeParameters(walls=True)(edges) if path.startswith("flow_path.")} == across
     assert free - walls == set(FreeParameters()(VANE))
     assert "flow_path.hub.points[0].r" in gauge_parameters(COMPRESSOR) - gauge_parameters(COMPRESSOR, walls=True)
 
@@ -52,12 +55,13 @@ def test_a_wall_has_as_few_points_as_follow_it(turn):
     t = np.linspace(0.0, 1.0, 201)
     heading = turn * t
     line = np.cumsum(np.stack([np.cos(heading), np.sin(heading)], axis=-1), axis=0) / 201 + [0.0, 0.5]
-    rows = _wall(line)
+    rows = _wall(line, np.array([CONTINUATIONS[0], CONTINUATIONS[1]]))
     assert len(rows) - 2 in WALL_COUNTS
     curve = ThroughPoints(points=tuple(Point(*row) for row in rows)).line(1.0).values(np.linspace(0.0, 1.0, 801))
     assert np.max(cKDTree(curve).query(line)[0]) < WALL_DISTANCE
     ahead, along = rows[0] - line[0], line[0] - line[1]
-    assert np.sqrt(np.sum(ahead**2)) == pytest.approx(CONTINUATION, rel=0.02)
+    assert np.sqrt(np.sum(ahead**2)) == pytest.approx(CONTINUATIONS[0], rel=0.02)
+    assert np.sqrt(np.sum((rows[-1] - line[-1]) ** 2)) == pytest.approx(CONTINUATIONS[1], rel=0.02)
     assert abs(ahead[0] * along[1] - ahead[1] * along[0]) < 1e-9
     assert np.sqrt(np.sum((rows[1] - line[0]) ** 2)) == pytest.approx(WALL_MARGIN, rel=0.02)
 

@@ -42,7 +42,7 @@ def model(noise=1e-4):
 
 @pytest.mark.parametrize("design", [MADE, STATOR], ids=lambda design: design.name)
 def test_control_points_of_a_wider_law_are_the_embedding_of_those_of_a_narrower_one(design):
-    wide = reshaped(design, wider_structure(design, 10_000))
+    wide = reshaped(design, wider_structure(design, design.parameters(), 10_000))
     for law in resizable_laws(wide):
         narrow = law.resized(structure_of(wide), law.counts(structure_of(design)))
         few, many = reshaped(wide, narrow), reshaped(reshaped(wide, narrow), structure_of(wide))
@@ -56,7 +56,7 @@ def test_a_law_at_stations_keeps_them():
     names = {law.name for law in resizable_laws(design)}
     assert structure_of(design).stations
     assert not names & set(structure_of(design).stations)
-    structure = rich_structure(design, 1000)
+    structure = rich_structure(design, design.parameters(), 1000)
     assert structure.stations == structure_of(design).stations
     rich = reshaped(design, structure)
     assert rich.metal_angle_out.span == design.metal_angle_out.span
@@ -128,7 +128,9 @@ def test_noise_is_not_followed_where_nothing_is_asked():
 
 
 def test_few_points_have_a_structure_of_few_control_points():
-    sizes = [len(reshaped(BASE, rich_structure(BASE, points)).parameters()) for points in (30, 60, 1000)]
+    sizes = [
+        len(reshaped(BASE, rich_structure(BASE, BASE.parameters(), points)).parameters()) for points in (30, 60, 1000)
+    ]
     assert sizes[0] == len(BASE.parameters())
     assert sizes[0] < sizes[1] <= 30 < sizes[2]
 

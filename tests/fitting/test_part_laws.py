@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+from bladewright.blade.design.meridional_curve import ThroughPoints
+from bladewright.designs import Point
 from bladewright.fitting.assessment.acceptance import MatchTarget
 from bladewright.fitting.families.kinds import FAMILIES, DesignHeader
 from bladewright.fitting.families.profile import first_parts, through_points
@@ -14,7 +16,7 @@ from bladewright.fitting.families.sections import _through_points, criterion, de
 from bladewright.fitting.free_parameters import EDGES, FreeParameters
 from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.model_selection.elimination import LinearModel
-from bladewright.fitting.model_selection.reshaping import reshaped, richest
+from bladewright.fitting.model_selection.reshaping import reshaped, rich_structure, richest
 from bladewright.fitting.model_selection.structure import resizable_laws, structure_of
 from bladewright.fitting.models.planar import infeasibility
 from bladewright.section.laws import Span
@@ -25,6 +27,8 @@ from machines.suction_pressure import STATOR, section
 
 PLACES = np.linspace(0.0, 1.0, 33)
 ALONE = Span(np.zeros(1))
+BENT = tuple(Point(x, 50.0 + 0.002 * x**2) for x in (-60.0, -10.0, 20.0, 50.0, 80.0, 140.0))
+OUTER = tuple(Point(each.x, 80.0 + 0.3 * each.r) for each in BENT)
 ROWS = on_meanline(curvature=(0.8, 1.0, 0.4), thickness=BLUNT, thickness_multiplier=(0.1, 0.0, 0.1, 0.2))
 
 
@@ -46,6 +50,25 @@ def test_a_blade_with_more_control_points_along_the_span_is_the_same_blade(desig
         for edge in EDGES:
             line, own = (getattr(each, edge).line(1.0).values(np.linspace(0.0, 1.0, 801)) for each in (wider, design))
             assert np.max(cKDTree(line).query(own)[0]) < 5e-3 * np.max(np.ptp(own, axis=0)), law.name
+
+
+def test_walls_get_points_where_they_are_free_alone():
+    flow_path = replace(COMPRESSOR.flow_path, hub=ThroughPoints(points=BENT), shroud=ThroughPoints(points=OUTER))
+    design = replace(COMPRESSOR, flow_path=flow_path)
+    own, free = structure_of(design), FreeParameters(walls=True)(design)
+    for wall, points in (("hub", BENT), ("shroud", OUTER)):
+        law = next(each for each in resizable_laws(design) if each.name == f"flow_path.{wall}")
+        assert law.counts(own) == (len(points),)
+        assert law.counts(rich_structure(design, FreeParameters()(design), 9000)) == (len(points),)
+        assert law.counts(rich_structure(design, free, 9000)) > (len(points),)
+        wider = reshaped(design, law.resized(own, (9,)))
+        lines = [getattr(each.flow_path, wall).line(1.0).values(np.linspace(0.0, 1.0, 801)) for each in (design, wider)]
+        assert np.max(cKDTree(lines[1]).query(lines[0])[0]) < 1e-3 * np.max(np.ptp(lines[0], axis=0))
+        # the other way round, points of a wall are those of the narrower one that are nearest to its
+        values = [np.array([each.parameters()[path] for path in law.paths(each)]) for each in (design, wider)]
+        back = {each.name: each for each in resizable_laws(wider)}[law.name]
+        near = back.embedding(structure_of(wider), (len(points),)) @ values[0]
+        assert near == pytest.approx(values[1], abs=0.02 * np.max(np.ptp(lines[0], axis=0)))
 
 
 @pytest.mark.parametrize("design", [ROWS, section(STATOR), EXAMPLES["camber-angle-blunt"].design])

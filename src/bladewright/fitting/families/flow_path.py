@@ -26,7 +26,8 @@ better known, and they are parameters."""
 WALL_MARGIN = 0.1
 """distance ahead of and behind the blade of the first and last of these points, of its length."""
 CONTINUATIONS = (0.8, 0.4, 0.2)
-"""lengths of the straight continuations at whose ends points stand, of the wall's length: the first that does not fold."""
+"""lengths of the straight continuations at whose ends points stand, of the wall's: the first are taken that do not
+fold"""
 LEAST_RADIUS = 0.6
 """share of the radius at its end that the continuation may lose: it must not meet the axis."""
 EDGE_POINTS = 4

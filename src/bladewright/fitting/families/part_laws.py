@@ -13,7 +13,7 @@ from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.designs import Law, Point
 from bladewright.errors import DesignError
-from bladewright.fitting.free_parameters import EDGES, sliding_coordinate
+from bladewright.fitting.free_parameters import EDGES, WALLS, sliding_coordinate
 from bladewright.fitting.initial_guess.slices import plain_law
 from bladewright.fitting.model_selection.reshaping import reshaped, richest
 from bladewright.fitting.model_selection.structure import (
@@ -27,6 +27,7 @@ from bladewright.fitting.model_selection.structure import (
     structure_of,
 )
 from bladewright.fitting.models.planar import SINGLE_SECTION
+from bladewright.numerics.elementary import cumulative_length
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber_angle import CamberAngle
 from bladewright.section.curvature_meanline import CurvatureMeanline
@@ -38,10 +39,12 @@ RICH_CHORDWISE = {2: 12, 3: 8}
 """control points of a law along the chord in a rich structure, by dimension."""
 RICH_SPAN = 5
 """control points of a law along the span in a rich structure."""
-RICH_EDGE = 8
-"""points on an edge curve of a rich structure: as many as on a channel's edges"""
-EDGE_SAMPLES = 2001
-"""places between which an edge curve is linear: within 1e-7 of its length"""
+RICH_CURVE = 8
+"""points on an edge curve or a wall of a rich structure: as many as on a channel's edges"""
+CURVE_SAMPLES = 2001
+"""places between which an edge curve or a wall is linear: within 1e-7 of its length"""
+FEWEST_ON_WALL = 5
+"""points of a wall at least: its ends, and three beside the blade"""
 MOST_CHORDWISE = 24
 """control points of a law along the chord at most; it bounds the time."""
 
@@ -239,13 +242,57 @@ class EdgeCurve(PartLaw):
         curve = getattr(design, self.name)
         if self.counts_of(design) == counts:
             return curve
-        line = np.real(curve.line(1.0).values(np.linspace(0.0, 1.0, EDGE_SAMPLES)))
+        line = np.real(curve.line(1.0).values(np.linspace(0.0, 1.0, CURVE_SAMPLES)))
         line = line[:, ::-1] if sliding_coordinate(design, self.name) == "r" else line
         order = np.argsort(line[:, 0])
         at = np.linspace(line[0, 0], line[-1, 0], counts[0])
         rows = np.stack([at, np.interp(at, *line[order].T)], axis=-1)
         rows = rows[:, ::-1] if sliding_coordinate(design, self.name) == "r" else rows
         return replace(curve, points=tuple(Point(*row) for row in rows.tolist()))
+
+
+@final
+@dataclass(frozen=True)
+class WallCurve(PartLaw):
+    """Hub or shroud through points: two ends, and others at even steps of its length past both edges."""
+
+    stations: tuple[float, ...]
+    """of its points, fractions of its length"""
+    holds_corners: ClassVar[bool] = True
+    along_span: ClassVar[tuple[int, ...]] = ()
+
+    def counts_of(self, design: Any) -> Counts:
+        return (len(law_at(design, self.name).points),)
+
+    def limits(self) -> tuple[Counts, Counts]:
+        return (FEWEST_ON_WALL,), (MOST_CURVE,)
+
+    def paths(self, design: Any) -> list[str]:
+        return [f"{self.name}.points[{i}].{axis}" for i in range(*self.counts_of(design)) for axis in "xr"]
+
+    def embedding(self, structure: PartStructure, counts: Counts) -> Reals:
+        own, other = (self._stations(each[0]) for each in (self.counts(structure), counts))
+        return np.asarray(np.kron(CubicSpline(other, np.eye(len(other)))(own), np.eye(2)))
+
+    def resized_value(self, design: Any, counts: Counts) -> Any:
+        curve = law_at(design, self.name)
+        if self.counts_of(design) == counts:
+            return curve
+        line = np.real(curve.line(1.0).values(np.linspace(0.0, 1.0, CURVE_SAMPLES)))
+        way = cumulative_length(line)
+        rows = np.stack([np.interp(self._stations(*counts), way / way[-1], axis) for axis in line.T], axis=-1)
+        return replace(curve, points=tuple(Point(*row) for row in rows.tolist()))
+
+    def _stations(self, count: int) -> Reals:
+        if count == len(self.stations):
+            return np.array(self.stations)
+        return np.array([0.0, *np.linspace(self.stations[1], self.stations[-2], count - 2), 1.0])
+
+
+def _wall_law(design: Any, name: str) -> WallCurve:
+    points = np.array([[float(np.real(each.x)), float(np.real(each.r))] for each in law_at(design, name).points])
+    way = cumulative_length(points)
+    return WallCurve(name, None, spanwise=True, stations=tuple((way / way[-1]).tolist()))
 
 
 def _nearest(row: Chordwise, count: int, other: int) -> Reals:
@@ -269,7 +316,10 @@ def _laws(design: Any) -> list[Any]:
         return found
     single = [path for path, _ in laws if path.partition("[")[0] not in {*stationary, *rows}]
     edges = [edge for edge in EDGES if isinstance(getattr(design, edge), ThroughPoints)]
-    return [*found, *(PartLaw(path, None, spanwise) for path in single), *(EdgeCurve(e, None, spanwise) for e in edges)]
+    paths = {f"flow_path.{wall}": getattr(design.flow_path, wall) for wall in WALLS}
+    walls = [p for p, w in paths.items() if isinstance(w, ThroughPoints) and len(w.points) >= FEWEST_ON_WALL]
+    found += [PartLaw(path, None, spanwise) for path in single]
+    return [*found, *(EdgeCurve(e, None, spanwise) for e in edges), *(_wall_law(design, wall) for wall in walls)]
 
 
 def _structure(design: Any) -> PartStructure:
@@ -304,7 +354,7 @@ def _richest(design: Any) -> PartStructure:
     for law in _laws(design):
         most = law.limits()[1]
         if len(most) == 1:
-            found[law.name] = (max(*law.counts_of(design), RICH_EDGE),)
+            found[law.name] = (max(*law.counts_of(design), RICH_CURVE),)
             continue
         along, across = law.counts_of(design)
         chordwise = along if law.row is None else max(along, RICH_CHORDWISE[3 if law.spanwise else 2])

@@ -1,5 +1,6 @@
 """The same shape with other numbers of control points, as nearly as they allow, and with edges of a valid shape."""
 
+from collections.abc import Collection
 from dataclasses import replace
 from functools import singledispatch
 from typing import Any
@@ -190,15 +191,17 @@ RICH_CHANNEL = (8, 8, 6, 6)
 """control points of the edges, of hub and of shroud."""
 
 
-def rich_structure(design: Design, points: int, rows: int = MOST_SPAN) -> Any:
+def rich_structure(design: Design, free: Collection[str], points: int, rows: int = MOST_SPAN) -> Any:
     """A structure with more control points in every law than a match of so many points is likely to need.
 
-    Along the span it has no more of them than `rows` of points.
+    Along the span it has no more of them than `rows` of points. Laws of which nothing is `free` keep theirs.
     """
-    return _towards(richest(design), design, points, rows)
+    return _towards(richest(design), design, free, points, rows)
 
 
-def wider_structure(design: Design, points: int, rows: int = MOST_SPAN, *, slim: bool = False) -> Any:
+def wider_structure(
+    design: Design, free: Collection[str], points: int, rows: int = MOST_SPAN, *, slim: bool = False
+) -> Any:
     """A structure with a third as many control points again in every law of a design, and a rich one at least.
 
     Along the span it has no more of them than `rows` of points. Of a structure that is `slim`, which has lost what it
@@ -210,15 +213,16 @@ def wider_structure(design: Design, points: int, rows: int = MOST_SPAN, *, slim:
         counts = zip(law.counts(own), law.counts(wide), law.limits()[1], strict=True)
         more = (max(few, min(count + max(1, count // share), most)) for count, few, most in counts)
         wide = law.resized(wide, tuple(more))
-    return _towards(wide, design, points, rows)
+    return _towards(wide, design, free, points, rows)
 
 
-def _towards(whole: Any, design: Design, points: int, rows: int) -> Any:
+def _towards(whole: Any, design: Design, free: Collection[str], points: int, rows: int) -> Any:
     """A structure with more control points than a design's own, or as large a share of them as the points allow."""
     whole, own = (within_rows(each, design, rows) for each in (whole, structure_of(design)))
+    laws = [law for law in resizable_laws(design) if not set(free).isdisjoint(law.paths(design) or free)]
     for share in SHARES:
         rich = own
-        for law in resizable_laws(design):
+        for law in laws:
             counts = zip(law.counts(own), law.counts(whole), strict=True)
             rich = law.resized(rich, tuple(count + round(share * (most - count)) for count, most in counts))
         rich = rich.with_samples(own.samples)

@@ -228,7 +228,7 @@ class _Selection:
                 slim = slim or is_exact(found)
                 about = self._without_surplus(found) if slim and found is not match else found.design
                 widened = rich_structure if found is match else partial(wider_structure, slim=slim)
-                design = with_feasible_edges(reshaped(about, widened(about, *shown)))
+                design = with_feasible_edges(reshaped(about, widened(about, self.task.free(about), *shown)))
                 richer = searched(self.task, design, noise=found.rms, rounds=rounds, min_reduction=ROUGH_REDUCTION)
             except (DesignError, FitError):
                 break
@@ -342,8 +342,8 @@ class _Selection:
     def _widened(self, match: Match) -> Match:
         """A match with more control points in every law, not searched, or the same where that leaves it no shape."""
         try:
-            rows = rows_shown(match.state.footpoints.v[match.rows])
-            design = reshaped(match.design, wider_structure(match.design, len(self.task.points), rows))
+            free, rows = self.task.free(match.design), rows_shown(match.state.footpoints.v[match.rows])
+            design = reshaped(match.design, wider_structure(match.design, free, len(self.task.points), rows))
             return searched(self.task, design, noise=match.rms, rounds=0)
         except (DesignError, FitError):
             return match
