@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
-from scipy.special import fdtri
+from scipy.special import fdtri, ndtri
 
 from bladewright.fitting.assessment.estimates import ParameterEstimates
 from bladewright.fitting.free_parameters import parameters_of_curve
@@ -36,14 +36,12 @@ REACH = 8.0
 sides, which are straight so far [-]"""
 INSIDE = 0.05
 """distance from an edge, in u, at which the sides show the direction across it [-]"""
-UNKNOWNS, ROUND_UNKNOWNS = 6, 5
-"""place, half width and turn of a face, and the slopes of both sides; place and radius of an arc, and these slopes"""
 SHARES = (0.9, 0.5, 0.1)
 """widths from which a face and an arc are fitted, of the half height of their points"""
 PLACES = {2: (41, 1), 3: (21, 11)}
 """places along each side, closer at the edges, and along the span at which it is asked how well the shape is known, by
 dimension; they bound the time"""
-NORMAL_95 = 1.96
+NORMAL_95 = float(ndtri(0.975))
 """standard deviations to either side within which 95 % of normal errors are [-]"""
 CONFIDENCE = 0.999
 """with which points are nearer to a face than to a round edge: by the ratio of their variances (Fisher 1925) [-]"""
@@ -164,12 +162,14 @@ def foreign_edges(match: Match) -> dict[str, float]:
         along, height = (np.sum(edge.miss * each, axis=-1) for each in (edge.normals, across))
         radius = _radius(match.state.shape.sides[0], end, float(np.median(feet.v)))
         rows = np.flatnonzero((along > -REACH * radius) & (np.abs(feet.u - end) < 0.5))
-        if len(rows) <= 2 * UNKNOWNS:
+        # place, half width and turn of a face, and the slopes of both sides; place and radius of an arc, and these
+        unknowns, round_unknowns = 6, 5
+        if len(rows) <= 2 * unknowns:
             continue
         width, left = _face(along[rows], height[rows])
         own, arc = float(np.sum(feet.distances[rows] ** 2)), _arc(along[rows], height[rows])
-        free = len(rows) - UNKNOWNS
-        others = (own, len(rows)), (arc, len(rows) - ROUND_UNKNOWNS)
+        free = len(rows) - unknowns
+        others = (own, len(rows)), (arc, len(rows) - round_unknowns)
         if all(other / count * free > fdtri(count, free, CONFIDENCE) * left for other, count in others):
             found[name] = width
     return found

@@ -26,8 +26,6 @@ LAST_STEP = 1e-10
 2e-10 m with the 1e-8 of other searches"""
 OFF_SIDES = 3.0
 """standard deviations of the distances from which a point is off the sides, and may be on another face"""
-LONGEST_NAME = 20
-"""characters of the longest name of such a face, cut trailing edge"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -82,7 +80,8 @@ def measured(
     sides = sides_of(built)
     exact = built.exact if isinstance(built, Blade) else None
     footpoints = nearest_footpoints(points, sides, converged=LAST_STEP)
-    set_aside, off = np.full(len(points), "", dtype=f"<U{LONGEST_NAME}"), footpoints.distances
+    # the longest name is "cut trailing edge"
+    set_aside, off = np.full(len(points), "", dtype="<U20"), footpoints.distances
     if hidden is not None and finished is not None and np.any(hidden != ""):
         rows = np.flatnonzero(hidden != "")
         rows = rows[off[rows] > OFF_SIDES * median_deviation(off[hidden == ""])]

@@ -22,7 +22,7 @@ FIGURES = ("mean", "rms", "percentile_99", "maximum")
 """figures of a deviation that are reported"""
 LISTED_OUTLIERS = 1000
 """outliers that are listed; the count is that of all"""
-MILLIMETRES = 1e3
+MILLIMETRES = 1.0 / UNITS["mm"]
 """millimetres in a metre"""
 FEW_PARAMETERS = 30
 """parameters up to which the text shows all of them; with more it shows the doubtful ones"""

@@ -47,7 +47,7 @@ CONFORMAL, UNROLLED = "m'-theta", "m-r*theta"
 """planes of stream surfaces in which sections are tried"""
 SAME_RADIUS = 1.02
 """ratio of the edges' radii below which both planes show the same sections but for their size, within 1 %"""
-MIDDLE = 3
+MIDDLE = len(START_SPANS) // 2
 """number of the section in the middle, by which structures are compared"""
 BAND = 0.15
 """half the width, in v, of the band of points that are taken for points of the section in its middle"""

@@ -44,9 +44,6 @@ OUTLINE_POINTS = 1000
 BESIDE, BY_CHANCE = 16, 1e-3
 """points beside each other by which a misfit is told that stays with an edge, which seldom has more, and probability
 that noise alone looks like one (`BY_CHANCE`), by the chi-squared test (Pearson 1900) [-]"""
-OUTLINE_SURPLUS = 2
-"""by how many the points of a contour are fewer than its parameters: one coordinate is free of each point but two, and
-four numbers place the section"""
 TOLERANCES = (0.0, 1e-8, 1e-6)
 """tolerances of the native sides, of the chord, finest first: the first is taken that the design can be built with."""
 
@@ -157,7 +154,8 @@ def _through_points(
     inliers = task.thinned(len(profile.rows)).part(np.flatnonzero(profile.rows))
     some, found = replace(inliers.thinned(OUTLINE_POINTS), allow_outliers=False), None
     starts = {_trailing_edge(each.design): each for each in reversed(tried)}
-    for count in OUTLINE_COUNTS if target.parameters is None else (target.parameters - OUTLINE_SURPLUS,):
+    # one coordinate is free of each point but two, and four numbers place the section
+    for count in OUTLINE_COUNTS if target.parameters is None else (target.parameters - 2,):
         fresh = {edge: _outlined(some, kind, each, count, header) for edge, each in starts.items()}
         best = min(filter(None, fresh.values()), key=_worst_neighbourhood, default=None)
         if best is None:
