@@ -6,7 +6,7 @@ from scipy.spatial import cKDTree
 
 from bladewright.errors import GeometryError
 from bladewright.nurbs.basis import uniform_knots
-from bladewright.nurbs.closest import closest_on_curve, closest_on_surface
+from bladewright.nurbs.closest import Descents, closest_on_curve, closest_on_surface
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import extended
 from bladewright.nurbs.fit import interpolated
@@ -253,3 +253,13 @@ def test_points_keep_their_shape():
 def test_points_that_cannot_be_compared_are_refused_with_the_reason(ask, says):
     with pytest.raises(GeometryError, match=says):
         ask()
+
+
+def test_places_on_a_folded_sheet_that_leans_are_found_but_beside_the_fold():
+    way = np.array([*((1.0 - t, 0.0, 0.0) for t in np.linspace(0.0, 1.0, 9))])
+    fold = np.concatenate([way, way[-2::-1] @ [[np.cos(1.4), np.sin(1.4), 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]])
+    knots, lean = uniform_knots(len(fold), 1), np.array([-0.3, 0.3, 1.0])
+    sheet = ruled(*(Curve(control_points=fold + at, knots=knots, degree=1) for at in (np.zeros(3), lean)))
+    points = sheet(*np.random.default_rng(0).random((2, 2000)))
+    # a descent may begin on the wrong leg where the fold is as near as the lean from one sample across to the next
+    assert np.max(Descents((sheet,)).nearest(points).square) < (np.sqrt(0.18) / 20.0) ** 2
