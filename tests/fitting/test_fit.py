@@ -188,7 +188,7 @@ def test_the_best_design_is_kept_where_the_interruption_falls_between_two_search
 
     monkeypatch.setattr("bladewright.fitting.model_selection.selection.eliminated", interrupted)
     # more points are measured by some of them, and the report says so
-    monkeypatch.setattr(f"{fit.__module__}.INTERRUPTED_POINTS", 300)
+    monkeypatch.setattr(f"{fit.__module__}.MOST_POINTS", 300)
     found = fit(cloud(0, 400))
     assert found.interrupted
     assert len(found.cloud) == len(found.distances) == 300

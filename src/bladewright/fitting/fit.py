@@ -20,7 +20,7 @@ from bladewright.fitting.assessment.estimates import parameter_estimates
 from bladewright.fitting.assessment.measurement import measured
 from bladewright.fitting.assessment.result import Fit, Motion
 from bladewright.fitting.clouds.cloud import checked_cloud, refuse_several_blades
-from bladewright.fitting.clouds.thinning import isolated_points
+from bladewright.fitting.clouds.thinning import MOST_POINTS, isolated_points
 from bladewright.fitting.clouds.walls import walls_of
 from bladewright.fitting.families.blades import matched_blade
 from bladewright.fitting.families.kinds import FAMILIES, DesignHeader, FitFamily, family_of
@@ -72,10 +72,6 @@ INTERRUPTED_NOTE = (
     "builds in a moment: lower it for finer surfaces"
 )
 """note on a blade that a search had found when it was interrupted"""
-INTERRUPTED_POINTS = 20_000
-"""points, drawn at random, that an interrupted match is measured by: half a second, where a million take 26 s"""
-MOST_SEARCHED = 20_000
-"""points that searches see, drawn at random; the largest use 12,000, and all are measured"""
 WHOLE_BLADE_HINT = "is it one whole blade, with both sides and both edges? If so, give a start design or bounds"
 """what to check where no design was found"""
 Progress = Callable[[str], None]
@@ -171,13 +167,13 @@ def fit(
             found, built, reason = realigned(turns, (found, built, reason), place, matched)
         here = turns[-1]
     except KeyboardInterrupt:
-        nearest = nearest_of(turns, INTERRUPTED_POINTS)
+        nearest = nearest_of(turns, MOST_POINTS)
         if nearest is None:
             raise
         here, found, built = nearest
         reason = INTERRUPTED_NOTE if points.shape[1] == 3 else ""
         if len(here.every.points) < len(points):
-            notes = (*notes, f"measured by {INTERRUPTED_POINTS} of {len(points)} points, drawn at random")
+            notes = (*notes, f"measured by {MOST_POINTS} of {len(points)} points, drawn at random")
     except DesignError as error:
         raise FitError(f"no design of the family was found near the points ({error}): {WHOLE_BLADE_HINT}") from error
     if not given and header.arrangement is None and getattr(found.design, "arrangement", "") == "linear":
@@ -252,7 +248,7 @@ def _searched_for(task: Task) -> Task:
     Where most points are copies, each place is taken once: copies share their noise, which would seem to be a misfit.
     """
     _, first = np.unique(task.points, axis=0, return_index=True)
-    some = (task.part(np.sort(first)) if 2 * len(first) <= len(task.points) else task).thinned(MOST_SEARCHED)
+    some = (task.part(np.sort(first)) if 2 * len(first) <= len(task.points) else task).thinned(MOST_POINTS)
     places, back = np.unique(some.points, axis=0, return_inverse=True)
     return some.part(np.flatnonzero(~isolated_points(places)[np.ravel(back)]))
 

@@ -19,7 +19,7 @@ from bladewright.blade.design.row_design import Arrangement
 from bladewright.designs import Design
 from bladewright.errors import FitError
 from bladewright.fitting.assessment.result import Motion
-from bladewright.fitting.clouds.thinning import even_subset, random_subset, without_isolated_points
+from bladewright.fitting.clouds.thinning import MOST_POINTS, even_subset, random_subset, without_isolated_points
 from bladewright.fitting.matching.footpoints import Side, footpoints_at, nearest_footpoints
 from bladewright.fitting.models.blunt_edges import sides_of
 from bladewright.numerics.robust import TUKEY_WIDTH, median_deviation, tukey_weights
@@ -30,14 +30,12 @@ GRID = {2: (2000, 1), 3: (241, 61)}
 """places along and across a side from which samples are chosen, by dimension"""
 SAMPLES = 8000
 """evenly spread samples, about a hundredth of the blade from each other: as near as true footpoints need to start"""
-LOOKED_AT, SEARCH_POINTS, DECIDING_POINTS = 20_000, 300, 3000
-"""points of the cloud among which isolated ones are told, those that choose among the starts, and those that decide.
+SEARCH_POINTS, DECIDING_POINTS = 300, 3000
+"""points of the cloud that choose among the starts, and those that decide.
 They bound the time: the motion has six unknowns, and of 3000 points its noise is a fiftieth of theirs
 (design/matching_constants.md)."""
 FOLLOWED_STARTS, TRIAL_STEPS = 2, 5
 """starts that are followed with true footpoints, and steps that choose among them"""
-POINT_STEPS, PLANE_STEPS, MOST_STEPS = 6, 24, 60
-"""steps of a start point to point, then point to plane, and of a descent with true footpoints at most"""
 FIRST_WIDTH, SHRINKING = 0.05, 4.0
 """first width of the weights, of the blade's extent, and the factor by which it shrinks at most in a step"""
 LEAST_WIDTH, LAST_STEP = 1e-8, 1e-12
@@ -85,7 +83,7 @@ def registration(points: Reals, design: Design) -> tuple[Motion, tuple[str, ...]
         raise FitError(f"{len(cloud)} points were given: at least 12 are needed to find where they lie")
     samples, normals = _samples(sides)
     extent = float(np.max(np.ptp(samples, axis=0)))
-    few = without_isolated_points(cloud[random_subset(len(cloud), LOOKED_AT)])
+    few = without_isolated_points(cloud[random_subset(len(cloud), MOST_POINTS)])
     few = few[even_subset(few, SEARCH_POINTS)]
 
     def touching(moved: Reals) -> Contact:
@@ -142,7 +140,7 @@ def _rough(points: Reals, samples: Reals, normals: Reals, motion: Motion) -> tup
             return moved - samples[index], every, normals[index]
         return moved - samples[index], np.repeat(every, dimension), np.tile(np.eye(dimension), (len(points), 1))
 
-    for planes, steps in ((False, POINT_STEPS), (True, PLANE_STEPS)):
+    for planes, steps in ((False, 6), (True, 24)):
         for _ in range(steps):
             motion = composed(_step(motion(points), contact(motion(points), planes=planes), 0.0, extent), motion)
     miss, _, directions = contact(motion(points), planes=True)
@@ -153,7 +151,7 @@ def _rough(points: Reals, samples: Reals, normals: Reals, motion: Motion) -> tup
 
 
 def _descended(
-    points: Reals, contacts: Callable[[Reals], Contact], motion: Motion, extent: float, steps: int = MOST_STEPS
+    points: Reals, contacts: Callable[[Reals], Contact], motion: Motion, extent: float, steps: int = 60
 ) -> Motion:
     """The motion of least robust distances near a first one."""
     width = FIRST_WIDTH * extent

@@ -12,11 +12,9 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from bladewright.errors import FitError
-from bladewright.fitting.clouds.thinning import even_subset, random_subset
+from bladewright.fitting.clouds.thinning import MOST_POINTS, even_subset, random_subset
 from bladewright.nurbs.basis import Reals
 
-CHECKED_POINTS = 20_000
-"""points that are looked at, at random; it bounds the time."""
 FEWEST_POINTS = {2: 24, 3: 100}
 """points that a fit of a section and of a blade needs, by dimension; fewer leave most parameters undetermined."""
 FLATTEST = 1e-5
@@ -49,7 +47,7 @@ def checked_cloud(cloud: ArrayLike) -> Reals:
     space), points on one line or one plane, and one side of a blade only.
     """
     points = _numbers(cloud)
-    different = np.unique(points[random_subset(len(points), CHECKED_POINTS)], axis=0)
+    different = np.unique(points[random_subset(len(points), MOST_POINTS)], axis=0)
     dimension = points.shape[1]
     if len(different) < FEWEST_POINTS[dimension]:
         raise FitError(
@@ -78,7 +76,7 @@ def checked_cloud(cloud: ArrayLike) -> Reals:
 
 def refuse_several_blades(points: Reals) -> None:
     """Raise FitError where points (n, 2) or (n, 3) [m] in the machine's axes are of two blades or more."""
-    found = pitch_found(np.unique(points[random_subset(len(points), CHECKED_POINTS)], axis=0))
+    found = pitch_found(np.unique(points[random_subset(len(points), MOST_POINTS)], axis=0))
     if found is not None:
         columns = ", or, where it is one, say which column is which (--columns): x must be the machine axis"
         raise FitError(

@@ -6,10 +6,9 @@ from scipy.spatial import cKDTree
 
 from bladewright.nurbs.basis import Reals
 
-FINEST = 12
-"""halvings of the extent in the finest grid"""
-TRIALS = 9
-"""grids that are tried: halvings of the interval in which the right cell size lies"""
+MOST_POINTS = 20_000
+"""points, drawn at random, that stand for a cloud of any size where all would take too long: a million points take 3.9
+times as long as 10,000 (design/matching.md)"""
 NEIGHBOURS, FEWEST_KNOWING = 16, 3
 """nearest neighbours of a point, and the most points that have an isolated one among theirs: of 3 % of outliers
 that are strewn over a twentieth of the extent half to nine tenths are isolated, and at most 3 of 5,000 good points
@@ -37,8 +36,9 @@ def even_subset(points: Reals, most: int) -> NDArray[np.intp]:
         return np.arange(len(points), dtype=np.intp)
     offset = points - points.min(axis=0)
     size = float(offset.max()) * (1.0 + 1e-9) or 1.0
-    coarse, fine = 0.0, float(FINEST)
-    for _ in range(TRIALS):
+    # halvings of the extent: 4096 cells along it are the finest
+    coarse, fine = 0.0, 12.0
+    for _ in range(9):
         middle = 0.5 * (coarse + fine)
         few = len(np.unique(_cells(offset / size, middle)[0])) <= most
         coarse, fine = (middle, fine) if few else (coarse, middle)
