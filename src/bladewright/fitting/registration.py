@@ -31,11 +31,8 @@ GRID = {2: (2000, 1), 3: (241, 61)}
 SAMPLES = 8000
 """evenly spread samples, about a hundredth of the blade from each other: as near as true footpoints need to start"""
 SEARCH_POINTS, DECIDING_POINTS = 300, 3000
-"""points of the cloud that choose among the starts, and those that decide.
-They bound the time: the motion has six unknowns, and of 3000 points its noise is a fiftieth of theirs
-(design/matching_constants.md)."""
-FOLLOWED_STARTS, TRIAL_STEPS = 2, 5
-"""starts that are followed with true footpoints, and steps that choose among them"""
+"""points of the cloud that choose among the starts, and those that the nearest is followed with. They bound the time:
+the motion has six unknowns, and of 3000 points its noise is a fiftieth of theirs (design/matching_constants.md)."""
 FIRST_WIDTH, SHRINKING = 0.05, 4.0
 """first width of the weights, of the blade's extent, and the factor by which it shrinks at most in a step"""
 LEAST_WIDTH, LAST_STEP = 1e-8, 1e-12
@@ -92,14 +89,10 @@ def registration(points: Reals, design: Design) -> tuple[Motion, tuple[str, ...]
         rows = np.concatenate([np.arange(len(moved)), past])
         return found.miss, rows, np.concatenate([found.normals, found.beyond[past]])
 
-    def distance(motion: Motion) -> float:
-        distances = nearest_footpoints(motion(few), sides).distances
-        return float(np.mean(np.minimum(distances, FIRST_WIDTH * extent)))
-
-    starts = sorted((_rough(few, samples, normals, start) for start in _starts(few, samples)), key=lambda each: each[0])
-    near = [_descended(few, touching, start, extent, steps=TRIAL_STEPS) for _, start in starts[:FOLLOWED_STARTS]]
+    tried = (_rough(few, samples, normals, start) for start in _starts(few, samples))
+    _, nearest = min(tried, key=lambda each: each[0])
     some = cloud[random_subset(len(cloud), DECIDING_POINTS)]
-    motion = _descended(some, touching, min(near, key=distance), extent)
+    motion = _descended(some, touching, nearest, extent)
     return motion, _notes(motion(some), touching(motion(some)), extent, float(np.real(built.chord)))
 
 
@@ -150,12 +143,10 @@ def _rough(points: Reals, samples: Reals, normals: Reals, motion: Motion) -> tup
     return float(np.mean(np.minimum(aside, FIRST_WIDTH * extent))), motion
 
 
-def _descended(
-    points: Reals, contacts: Callable[[Reals], Contact], motion: Motion, extent: float, steps: int = 60
-) -> Motion:
+def _descended(points: Reals, contacts: Callable[[Reals], Contact], motion: Motion, extent: float) -> Motion:
     """The motion of least robust distances near a first one."""
     width = FIRST_WIDTH * extent
-    for _ in range(steps):
+    for _ in range(60):
         moved = motion(points)
         contact = contacts(moved)
         needed = max(_noise_width(contact), LEAST_WIDTH * extent)
