@@ -47,11 +47,13 @@ def alpha_boundary(places: Reals) -> Reals:
 
 def _loop(triangles: NDArray[np.intp], count: int) -> list[int] | None:
     """The vertices of the single closed boundary of triangles that contain nearly all points, or None."""
+    if len(np.unique(triangles)) < LEAST_COVERED * count:
+        return None
     edges = {(int(i), int(j)) for i, j in triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)}
     # triangles are anticlockwise, so that two share an edge in both directions
     outer = [(i, j) for i, j in edges if (j, i) not in edges]
     following = dict(outer)
-    if not outer or len(following) < len(outer) or len(np.unique(triangles)) < LEAST_COVERED * count:
+    if len(following) < len(outer):
         return None
     loop = [min(following)]
     while following[loop[-1]] != loop[0]:
