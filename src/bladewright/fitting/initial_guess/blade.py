@@ -16,7 +16,12 @@ from bladewright.designs import Point
 from bladewright.errors import BladewrightError, FitError
 from bladewright.fitting.clouds.thinning import even_subset, random_subset, without_isolated_points
 from bladewright.fitting.free_parameters import FreeParameters
-from bladewright.fitting.initial_guess.channel import SlicedChannel, machine_coordinates, ranked_channels
+from bladewright.fitting.initial_guess.channel import (
+    CLEAR_DISTANCE,
+    SlicedChannel,
+    machine_coordinates,
+    ranked_channels,
+)
 from bladewright.fitting.initial_guess.slices import PLACES, fitted_law, plain_law, unified_numbers
 from bladewright.fitting.matching.search import Match, Task, searched
 from bladewright.fitting.model_selection.reshaping import reshaped, with_feasible_edges
@@ -33,8 +38,6 @@ FEW = INITIAL_BLADES[1]
 """numbers of control points of the blade that is searched"""
 NOISE, ROUNDS = 0.03, 3
 """noise assumed of a first blade, of the chord, and rounds of its search (design/matching_constants.md)"""
-NEAR = 2e-3
-"""mean distance, of the chord, with which no other outline is tried"""
 INLIER_SHARE = 0.94
 """share of the points that are surely no outliers"""
 MOST_OUTLINES = 3
@@ -75,7 +78,7 @@ def first_blade(
             refusal = error
             continue
         best = found if best is None or typical_distance(found) < typical_distance(best) else best
-        if typical_distance(best) < NEAR:
+        if typical_distance(best) < CLEAR_DISTANCE:
             break
     if best is None:
         raise FitError(f"no blade that can be built was found near the points ({refusal}); {AXES_HINT}")
