@@ -262,7 +262,7 @@ def _matched(kind: FitFamily, shape: SectionShape, points: Reals, parts: Sequenc
         )
         for part in parts
     )
-    return searched(task, compared(task, designs)[0].design, rounds=QUICK_ROUNDS)
+    return searched(task, compared(task, designs)[0].design, rounds=QUICK_ROUNDS, fading=True)
 
 
 def _section_parameters(design: Design) -> tuple[str, ...]:

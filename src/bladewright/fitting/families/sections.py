@@ -175,7 +175,7 @@ def _outlined(task: Task, kind: FitFamily, start: Match, count: int, header: Des
     try:
         shape = section_shape(design.build())
         (first,) = designs_of(kind, shape, [kind.through_points(shape, count)], header, task)
-        found = searched(task, first, min_reduction=ROUGH_REDUCTION)
+        found = searched(task, first, min_reduction=ROUGH_REDUCTION, fading=True)
     except (DesignError, FitError):
         return None
     return found if can_be_built(found, TOLERANCES[-1]) else None
@@ -210,7 +210,7 @@ def compared(task: Task, designs: Iterator[Design]) -> list[Match]:
     found, refusal = [], FitError("no structure of the family was tried")
     for design in designs:
         try:
-            found.append(searched(task, design, rounds=TRIAL_ROUNDS))
+            found.append(searched(task, design, rounds=TRIAL_ROUNDS, fading=True))
         except (DesignError, FitError) as error:
             refusal = FitError(str(error))
     if not found:

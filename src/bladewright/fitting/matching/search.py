@@ -68,9 +68,9 @@ ROUGH_REDUCTION = 0.01
 """predicted relative reduction of the cost that a step needs while a search is only one on the way: exact minima of
 intermediate structures are not needed (design/matching_constants.md)."""
 REGULARISATION_DECAY = 0.5
-"""ratio of the noise that a round's regularisation is for to that of the round before, at most, where the misfit is
-systematic (iteratively regularised Gauss-Newton: Bakushinskii 1992). Held at the misfit, which it causes itself, it
-kept searches 7e-3 of the chord off (design/matching.md)."""
+"""ratio of the noise that a fading regularisation is for to that of the round before, at most (iteratively regularised
+Gauss-Newton: Bakushinskii 1992). Held at the misfit, which it causes itself, it kept rich matches 7e-3 of chord off;
+where few control points cause the misfit, it leaves them wild, and predictions about them poor (design/matching.md)."""
 MENDING_ROUNDS = 3
 """rounds of a search with points that a match left out: the rounds of a rich match"""
 FAST_RATIO = 0.5
@@ -230,11 +230,13 @@ def searched(
     noise: float | None = None,
     min_reduction: float = MIN_REDUCTION,
     enough: float = EXACT_MISFIT,
+    fading: bool = False,
 ) -> Match:
     """The design nearest to the cloud that a search from `start` finds, with the structure of `start`.
 
     `noise` is the first round's, of the chord; None takes the misfit of the start. `min_reduction` is the relative
     reduction of the cost that a step must predict, `enough` the misfit, of the chord, below which the search ends.
+    As long as the misfit is systematic, the regularisation does not rise, and falls where it is `fading`.
     Raises FitError where the start has no shape, and KeyboardInterrupt after it has noted the best design of a round
     that was interrupted.
     """
@@ -260,7 +262,8 @@ def searched(
         last = found.rms if noise is None else noise
         noise = found.rms * (max(ratio, 1e-3) if ratio < FAST_RATIO else 1.0)
         if has_systematic_misfit(found):
-            noise = min(noise, max(REGULARISATION_DECAY * last, found.noise_estimate.noise / found.model.chord))
+            least = REGULARISATION_DECAY * last if fading else last
+            noise = min(noise, max(least, found.noise_estimate.noise / found.model.chord))
     return found
 
 

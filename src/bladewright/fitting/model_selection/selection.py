@@ -86,12 +86,8 @@ def selected_match(
     `first` is a first design, a guess or a start; `like` is the structure of a given design.
     """
     several, many = task.thinned(SEVERAL_POINTS), task.thinned(THOROUGH_POINTS)
-    found = searched(
-        task.thinned(QUICK_POINTS) if task.dimension == 3 else several,
-        first,
-        noise=GUESS_NOISE if guessed else None,
-        min_reduction=ROUGH_REDUCTION,
-    )
+    few, noise = task.thinned(QUICK_POINTS) if task.dimension == 3 else several, GUESS_NOISE if guessed else None
+    found = searched(few, first, noise=noise, min_reduction=ROUGH_REDUCTION)
     found = trusted_or_from_other_edges(several, found, GUESS_NOISE) if task.dimension == 2 and guessed else found
     if target.structured and target.tolerance is None:
         return _of_structure(several, many, found, like or structure_of(first), guessed=guessed), ""
@@ -101,7 +97,7 @@ def selected_match(
     selection = _Selection(task=several, samples=(like or structure_of(first)).samples, first=found.design)
     if task.dimension == 3 and guessed:
         # laws that need no control points along the span begin as constants
-        found = replace(selection, task=task.thinned(QUICK_POINTS)).well_predicted(found)
+        found = replace(selection, task=few).well_predicted(found)
         selection = replace(selection, first=found.design)
     near = NEAR * found.model.chord
     if target.open and found.maximum < near:
@@ -229,7 +225,9 @@ class _Selection:
                 about = self._without_surplus(found) if slim and found is not match else found.design
                 widened = rich_structure if found is match else partial(wider_structure, slim=slim)
                 design = with_feasible_edges(reshaped(about, widened(about, self.task.free(about), *shown)))
-                richer = searched(self.task, design, noise=found.rms, rounds=rounds, min_reduction=ROUGH_REDUCTION)
+                richer = searched(
+                    self.task, design, noise=found.rms, rounds=rounds, min_reduction=ROUGH_REDUCTION, fading=True
+                )
             except (DesignError, FitError):
                 break
             before, found = found, richer if found is match or richer.rms < found.rms else found
@@ -239,8 +237,7 @@ class _Selection:
 
     def _without_surplus(self, rich: Match) -> Design:
         """The design of the fewest control points that is predicted to leave hardly more than a rich match."""
-        model = self._model(rich)
-        candidates = eliminated(model, 0)
+        candidates = eliminated(model := self._model(rich), 0)
         chosen = [each for each in candidates if each.rms <= NEAR_RICH * candidates[0].rms]
         start = self._start(model, chosen[-1]) if chosen else None
         return rich.design if start is None else start.design
