@@ -30,7 +30,7 @@ SPAN_PARTS = 5
 COVERED_SHARE = 0.5
 """share of these parts that must have a point on the edge's arc; below it the edge is uncovered."""
 THICKNESS_SAMPLES = 25
-"""places along a section among which it is thickest"""
+"""places along a section among which it is thickest: half and twice change nothing (design/matching_constants.md)"""
 REACH = 8.0
 """how far from the end of an edge points are compared, in its radii: a face as wide as the edge and as much of both
 sides, which are straight so far [-]"""

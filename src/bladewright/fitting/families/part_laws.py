@@ -46,7 +46,8 @@ CURVE_SAMPLES = 2001
 FEWEST_ON_WALL = 5
 """points of a wall at least: its ends, and three beside the blade"""
 MOST_CHORDWISE = 24
-"""control points of a law along the chord at most; it bounds the time."""
+"""control points of a law along the chord at most; it bounds the time: half and twice change nothing
+(design/matching_constants.md)."""
 
 
 @dataclass(frozen=True, kw_only=True)

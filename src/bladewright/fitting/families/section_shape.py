@@ -16,11 +16,11 @@ PLACES: Reals = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 201))) / 2.0
 INNER = (PLACES > 0.03) & (PLACES < 0.97)
 """those away from the edges, where a camber line between the sides may bend towards a corner of a thick edge"""
 CAMBER_TERMS = 5
-"""coefficients of the polynomial that multiplies x (1 - x) in a camber line"""
+"""coefficients of the polynomial that multiplies x (1 - x) in a camber line (design/matching_constants.md)"""
 UNROLLED_PLACES = 2001
 """places along a stream line between which its radius is linear: within 1e-7 of its length"""
 EDGE_PLACE = 0.02
-"""chord fraction, from an edge, at which the half thickness bounds its radius"""
+"""chord fraction, from an edge, at which the half thickness bounds its radius (design/matching_constants.md)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

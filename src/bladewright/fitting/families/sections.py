@@ -28,7 +28,7 @@ from bladewright.fitting.models.planar import SINGLE_SECTION
 from bladewright.section.checks import UNITS
 
 TRIAL_POINTS, TRIAL_ROUNDS = 400, 2
-"""points and rounds of the search by which first designs are compared"""
+"""points and rounds of the search by which first designs are compared (design/matching_constants.md)"""
 CONSIDERED, PROMISING = 3, 3.0
 """first designs that are searched on at most, and ratio of their misfits to the least (`PROMISING`): a search of a few
 rounds and control points tells them apart by about that much (design/matching.md)"""

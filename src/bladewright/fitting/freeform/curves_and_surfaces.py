@@ -34,7 +34,8 @@ GRID_CELLS = 150
 """cells along the extent of the points in which neighbours become one, so that noise does not fold the path
 (design/freeform.md)"""
 MOST_CELLS = 1500
-"""cells of which all distances are compared; it bounds time and memory."""
+"""cells of which all distances are compared; it bounds time and memory: half and twice change nothing
+(design/matching_constants.md)."""
 MARGIN = 0.05
 """length, of the domain, by which the surface is continued past its edges while it moves (design/freeform.md)"""
 HELD_BY_BOUNDARY: dict[str, Literal["none", "corners", "boundary"]] = {
