@@ -16,6 +16,8 @@ from bladewright.errors import BladewrightError
 GRID = (801, 401)
 """samples along and across a face from which nearest places are searched: with 121 across the other side of a long,
 thin blade was nearer than the next sample, and a search from there ended on the rim, 6e-4 of the chord off"""
+CLEAR = 10.0
+"""distance of an outlier from what was built, of the noise, from which it counts"""
 STEPS = 30
 """Gauss-Newton steps of a nearest place at most"""
 
@@ -89,8 +91,10 @@ def reached_by_call(cloud, options):
         **away(cloud, found.built, found.motion),
     }
     if cloud.outlier is not None:
-        record["planted"] = int(np.count_nonzero(cloud.outlier))
-        record["kept"] = int(np.count_nonzero(cloud.outlier & found.inliers))
+        # one that was moved along the surface is none: at least ten times the noise is asked
+        clear = cloud.outlier & (found.distances >= CLEAR * found.noise)
+        record["planted"] = int(np.count_nonzero(clear))
+        record["kept"] = int(np.count_nonzero(clear & found.inliers))
         record["good"] = int(np.count_nonzero(~cloud.outlier))
         record["dropped"] = int(np.count_nonzero(~cloud.outlier & ~found.inliers))
     return record
