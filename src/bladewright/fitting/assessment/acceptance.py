@@ -4,9 +4,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bladewright.fitting.assessment.coverage import (
+    EDGE_PARAMETERS,
     NORMAL_95,
+    bare_places,
     foreign_edges,
     least_thickness,
     loose_ends,
@@ -102,11 +105,15 @@ def failures_of(
 
 
 def _not_shown(statistics: ParameterEstimates, match: Match) -> list[str]:
-    """Where a side, an edge or an end is known less well than is trusted, and than one point there would show it."""
+    """Where a side, an edge or an end is known less well than is trusted, and than one point there would show it.
+
+    Where an edge that is known elsewhere has no points, that is a note (`_bare_edges`).
+    """
     chord, one_point = match.model.chord, NORMAL_95 * match.noise_estimate.noise
     ends, edges = max(KNOWN * chord, one_point), max(GROSS_DEVIATION[1] * chord, one_point)
     side, u, v, half_widths = shape_bands(match, statistics)
     limits = np.where(np.minimum(u, 1.0 - u) < BETWEEN_EDGES, edges, ends)
+    limits[_bare(match, side, u, v, half_widths)] = np.inf
     worst = int(np.argmax(half_widths / limits))
     found = []
     if half_widths[worst] > limits[worst]:
@@ -123,6 +130,30 @@ def _not_shown(statistics: ParameterEstimates, match: Match) -> list[str]:
             f"{_loose_ends_message(match, unknown)}, and {100 * ends / chord:.2g} % of the chord are allowed: give "
             "points there, hold hub and shroud, or state a tolerance"
         )
+    return found
+
+
+def _bare(match: Match, side: NDArray[np.intp], u: Reals, v: Reals, half_widths: Reals) -> NDArray[np.bool_]:
+    """Whether places (n,) lie at an edge past all points there, which elsewhere along the span is known."""
+    known = half_widths <= GROSS_DEVIATION[1] * match.model.chord
+    bare = bare_places(match, side, u, v)
+    edges = [np.abs(u - end) < BETWEEN_EDGES for end in EDGE_PARAMETERS.values() if np.any(known[u == end])]
+    return np.asarray(bare & np.any(edges, axis=0)) if edges else np.zeros_like(bare)
+
+
+def _bare_edges(statistics: ParameterEstimates, match: Match) -> list[str]:
+    """Edges without points on a part of the span, where they are known less well than is trusted."""
+    side, u, v, half_widths = shape_bands(match, statistics)
+    limit, found = GROSS_DEVIATION[1] * match.model.chord, []
+    bare = _bare(match, side, u, v, half_widths) & (half_widths > limit)
+    for name, end in EDGE_PARAMETERS.items():
+        rows = np.flatnonzero(bare & (np.abs(u - end) < BETWEEN_EDGES))
+        if len(rows):
+            known = with_unit(match.design, float(np.max(half_widths[rows])), 2)
+            found.append(
+                f"no point shows the {name} from v = {min(v[rows]):.2g} to {max(v[rows]):.2g}: it is known there to "
+                f"{known} either way (95 %)"
+            )
     return found
 
 
@@ -224,6 +255,8 @@ def notes_of(
         "are round: it stays within half of that (--family profile has blunt and sharp edges)"
         for name, width in foreign_edges(match).items()
     ]
+    if target.open and not match.interrupted:
+        sentences += _bare_edges(statistics, match)
     loose = loose_ends(match)
     if loose:
         sentences.append(_loose_ends_message(match, loose))

@@ -112,6 +112,16 @@ def shape_bands(match: Match, statistics: ParameterEstimates) -> tuple[NDArray[n
     return side, u, v, NORMAL_95 * np.sqrt(np.maximum(variances, 0.0))
 
 
+def bare_places(match: Match, side: NDArray[np.intp], u: Reals, v: Reals) -> NDArray[np.bool_]:
+    """Whether places (n,) are further along a side than all points of their part of the span, outliers too."""
+    feet = match.state.footpoints
+    own, part = (side_of * SPAN_PARTS + _part_of_span(at) for side_of, at in ((feet.side, feet.v), (side, v)))
+    low, high = (np.full(2 * SPAN_PARTS, end) for end in (np.inf, -np.inf))
+    np.minimum.at(low, own, feet.u)
+    np.maximum.at(high, own, feet.u)
+    return np.asarray((u < low[part]) | (u > high[part]))
+
+
 def least_thickness(match: Match) -> float:
     """The least over the span of the sections' largest thickness [m]; infinite for families with other edges."""
     if not match.model.rounded:
@@ -122,9 +132,13 @@ def least_thickness(match: Match) -> float:
 def _nearest(footpoints: Footpoints, rows: NDArray[np.bool_], end: float) -> NDArray[np.intp]:
     """For each side and part of the span the point that is nearest to an edge."""
     away = np.where(rows, np.abs(footpoints.u - end), np.inf)
-    part = np.minimum((SPAN_PARTS * footpoints.v).astype(int), SPAN_PARTS - 1) + SPAN_PARTS * footpoints.side
+    part = _part_of_span(footpoints.v) + SPAN_PARTS * footpoints.side
     found = [np.flatnonzero(part == each)[np.argmin(away[part == each])] for each in np.unique(part)]
     return np.array([each for each in found if np.isfinite(away[each])], dtype=np.intp)
+
+
+def _part_of_span(v: Reals) -> NDArray[np.intp]:
+    return np.minimum((SPAN_PARTS * v).astype(np.intp), SPAN_PARTS - 1)
 
 
 def _thickness(sides: tuple[Side, ...], v: float) -> float:
