@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import product
+from itertools import pairwise, product
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -20,32 +20,17 @@ from bladewright.section.segmented.parts import AirfoilSide, Nose, Segment, Segm
 from bladewright.section.segmented.segment import DEGREE, control_points, segment_knots
 from bladewright.section.segmented.skin import SEGMENTS
 
-LONGEST_CONTOUR = 2.6
-"""length of the polygon of points in order around a section, of its extent from the first point, up to which they are
-taken to be in order: twice the extent and a margin for thickness and camber; unordered points are much longer [-]"""
-CLOSED = 1e-6
-"""distance of the sides' ends up to which a trailing edge is closed, of the chord: tables have six digits [-]"""
 PLACES: Reals = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 401))) / 2.0
 """s at which a side is sampled"""
 WINDOW = 0.05
-"""length to both sides of a cut over which a side's slope and curvature are taken, of the chord: short enough for a
-polynomial of degree three, long enough for what points leave open [-] (design/matching_constants.md)"""
-NOSE_WINDOWS, NOSE_DEGREE = (0.006, 0.012, 0.024), 5
-"""lengths to both sides of the leading edge over which its direction and curvature are taken, of the chord, and the
-degree of the polynomials that give them (`NOSE_DEGREE`): tables may be irregular there [-]"""
-REACHES = (0.04, 0.1, 0.22, 0.45)
-"""how far the third control point from a joint lies along the segment, in the trials of its scale factor: a search from
-one pair alone may end 40 times as far from the section [-]"""
-REFINED = 2
-"""trials that are refined"""
-REACH_RANGE = (0.015, 0.6)
-"""to which it is limited in a start [-]"""
-PROJECTIONS = 3
-"""times that a trial segment is projected onto the section anew"""
+"""length to both sides of a cut, or of the leading edge, over which a side's direction and curvature are taken, of the
+chord: short enough for a polynomial of degree three, long enough for what points leave open [-]
+(design/matching_constants.md)"""
+SCALES = (0.5, 1.0)
+"""scale factors with which a segment's search begins, as from one alone it may end at another minimum (`SCALES` in
+design/matching_constants.md) [-]"""
 SAMPLES: Reals = np.linspace(0.0, 1.0, 33)[1:-1]
 """parameters at which a segment is compared with the section"""
-STIFFNESS = 1e-4
-"""weight that holds an inner control point where it was along the segment, of the weight of all samples"""
 _JOINT = SegmentJoint(height=0.0, angle=0.0, curvature=0.0)
 _SEGMENT = Segment(abscissas=(0.5,), ordinates=(0.0,), front_scale=1.0, rear_scale=1.0)
 _SIDE = AirfoilSide(
@@ -65,7 +50,9 @@ def contour_shape(points: Reals) -> SectionShape | None:
     It is that of a spline through them, with the corners that they show at the trailing edge.
     """
     way = float(np.sum(length(np.diff(points, axis=0, append=points[:1]))))
-    if way > LONGEST_CONTOUR * float(np.max(length(points - points[0]))):
+    # a convex contour is no longer than pi times its largest extent (Rosenthal and Szasz 1916), and points in another
+    # order are joined by a much longer polygon
+    if way > np.pi * float(np.max(length(points - points[0]))):
         return None
     try:
         x, y = (tuple(axis.tolist()) for axis in points.T)
@@ -91,15 +78,14 @@ def first_parts(shape: SectionShape, like: Segmented | None) -> Sequence[Segment
     """The airfoils nearest to a section: joints from its sides, each segment by least squares of its own.
 
     Without a structure it is the reduced form, its trailing edge open or closed as the section's is, and both for a
-    round one. The leading edge's direction and radius are those, of several estimates, with which its segments come
-    nearest.
+    round one.
     """
     if like is not None:
         return [_first_part(shape, like)]
     closed = replace(REDUCED, trailing_edge_thickness=None)
     if shape.edge_radii[1] > 0.0:
         return [_first_part(shape, each) for each in (REDUCED, closed)]
-    return [_first_part(shape, REDUCED if length(shape.upper[-1] - shape.lower[-1]) > CLOSED else closed)]
+    return [_first_part(shape, closed if np.allclose(shape.upper[-1], shape.lower[-1]) else REDUCED)]
 
 
 def _first_part(shape: SectionShape, like: Segmented) -> Segmented:
@@ -107,45 +93,36 @@ def _first_part(shape: SectionShape, like: Segmented) -> Segmented:
     cuts = [float(np.mean(law_points(each))) for each in like.partition]
     part = replace(
         like,
+        nose=_nose(like.nose, shape),
         stagger_angle=float(np.degrees(shape.stagger)),
         trailing_edge_thickness=None if like.trailing_edge_thickness is None else thickness,
         upper=_joined(like.upper, shape.upper, cuts),
         lower=_joined(like.lower, shape.lower, cuts),
         morph=None,
     )
-    for name in ("central_box", "trailing_edge"):
-        part, _ = _with_segments(part, shape, name)
-    noses = [_with_segments(replace(part, nose=nose), shape, "leading_edge") for nose in _noses(like.nose, shape)]
-    return min(noses, key=lambda pair: pair[1])[0]
-
-
-def _with_segments(part: Segmented, shape: SectionShape, name: str) -> tuple[Segmented, float]:
-    """The airfoil with a segment of both sides nearest to the section's, and the sum of its squared distances."""
-    at, total = SEGMENTS.index(name), 0.0
     for side, sign, line in (("upper", 1.0, shape.upper), ("lower", -1.0, shape.lower)):
-        joints = side_joints(part, sign, SINGLE_SECTION)[at : at + 2]
-        segment, cost = _fitted(getattr(getattr(part, side), name), (joints[0], joints[1]), line)
-        part = replace(part, **{side: replace(getattr(part, side), **{name: segment})})
-        total += cost
-    return part, total
+        own, joints = getattr(part, side), side_joints(part, sign, SINGLE_SECTION)
+        fitted = {
+            name: _fitted(getattr(own, name), (first, last), line)
+            for name, (first, last) in zip(SEGMENTS, pairwise(joints), strict=True)
+        }
+        part = replace(part, **{side: replace(own, **fitted)})
+    return part
 
 
-def _noses(like: Nose | None, shape: SectionShape) -> Sequence[Nose | None]:
-    """Direction and radius of the leading edge, by polynomials over a narrow and a wide window."""
+def _nose(like: Nose | None, shape: SectionShape) -> Nose | None:
+    """Direction and radius of the leading edge, by polynomials of the length around it."""
     if like is None or like.angle is None:
-        return [like]
+        return like
     around = np.concatenate([shape.lower[:0:-1], shape.upper])
     way = np.cumsum(length(np.diff(around, axis=0, prepend=around[:1])))
     way = way - way[len(shape.lower) - 1]
-    found = []
-    for window in NOSE_WINDOWS:
-        near = np.square(way) < window**2
-        fitted = [np.polynomial.Polynomial.fit(way[near], around[near, axis], NOSE_DEGREE) for axis in (0, 1)]
-        first, second = (np.array([each.deriv(order)(0.0) for each in fitted]) for order in (1, 2))
-        curvature = float(cross2(first, second)) / float(length(first)) ** 3
-        radius = None if like.radius is None else float(np.clip(-1.0 / min(curvature, -1e-9), 1e-3, 0.2))
-        found.append(Nose(angle=float(np.degrees(np.arctan2(-first[0], first[1]))), radius=radius))
-    return found
+    near = np.square(way) < WINDOW**2
+    fitted = [np.polynomial.Polynomial.fit(way[near], around[near, axis], 3) for axis in (0, 1)]
+    first, second = (np.array([each.deriv(order)(0.0) for each in fitted]) for order in (1, 2))
+    curvature = float(cross2(first, second)) / float(length(first)) ** 3
+    radius = None if like.radius is None else float(np.clip(-1.0 / min(curvature, -1e-9), 1e-3, 0.2))
+    return Nose(angle=float(np.degrees(np.arctan2(-first[0], first[1]))), radius=radius)
 
 
 def _joined(like: AirfoilSide, line: Reals, cuts: list[float]) -> AirfoilSide:
@@ -166,96 +143,47 @@ def _joined(like: AirfoilSide, line: Reals, cuts: list[float]) -> AirfoilSide:
     return replace(like, front_joint=found[0], rear_joint=found[1])
 
 
-def _fitted(like: Segment, joints: tuple[JointVectors, JointVectors], line: Reals) -> tuple[Segment, float]:
-    """The segment between two joints that is nearest to a line (n, 2), and the sum of its squared distances.
+def _fitted(like: Segment, joints: tuple[JointVectors, JointVectors], line: Reals) -> Segment:
+    """The segment between two joints that is nearest to a line (n, 2) at `SAMPLES`, by least squares.
 
-    It is the best of several pairs of scale factors, refined.
+    Its unknowns are both scale factors and the inner control points, which begin on the line and stay between the
+    joints; the best is taken of searches that begin with several scale factors.
     """
-    trial = _Trial(like, joints, line)
-    reaches = [REACHES if free else REACHES[:1] for free in trial.scaled]
-    tried = [trial.projected(trial.scale_of_reach * np.array(pair)) for pair in product(*reaches)]
-    tried.sort(key=lambda unknowns: float(np.sum(trial.heights(unknowns) ** 2)))
-    low, high = trial.limits()
-    size = np.array([0.3, 0.3, *[0.05] * (2 * trial.count)])
-    refined = [
-        least_squares(trial.heights, np.clip(each, low, high), bounds=(low, high), x_scale=size, max_nfev=20)
-        for each in tried[:REFINED]
-    ]
-    best = min(refined, key=lambda one: float(one.cost))
-    scales = [float(value) if free else None for value, free in zip(best.x[:2], trial.scaled, strict=True)]
+    count, scaled = len(like.abscissas), [joint.direction is not None for joint in joints]
+    start, end = (np.real(each.point[0]) for each in joints)
+    distance = length(end - start)
+    kept = [1 + (joint.direction is not None) + (joint.curvature is not None) for joint in joints]
+    knots = segment_knots(count + sum(kept))
+    rows, share = basis(knots, DEGREE, SAMPLES), greville(knots, DEGREE)[kept[0] : kept[0] + count, None]
+    along, tree = unit(np.diff(line, axis=0)), cKDTree(line)
+
+    def feet(points: Reals) -> tuple[Reals, Reals]:
+        """The nearest places of the line (m, 2), which continues straight past its ends, and its normals there."""
+        first = np.clip(tree.query(points)[1], 0, len(along) - 1)
+        behind = dot(points - line[first], along[first]) < 0.0
+        piece = np.where(behind, np.maximum(first - 1, 0), first)
+        way = dot(points - line[piece], along[piece])
+        return line[piece] + way[:, None] * along[piece], turned_left(along[piece])
+
+    def heights(unknowns: Reals) -> Reals:
+        """Distances of the segment's samples from the line."""
+        ends = [joint.end(distance, np.array([scale])) for joint, scale in zip(joints, unknowns[:2], strict=True)]
+        points = rows @ control_points(ends[0], unknowns[2:].reshape(1, -1, 2), ends[1])[0]
+        places, normals = feet(points)
+        return np.asarray(dot(points - places, normals))
+
+    low, high = np.full(2 + 2 * count, -np.inf), np.full(2 + 2 * count, np.inf)
+    low[:2], low[2::2], high[2::2] = 0.0, start[0], end[0]
+    inner = feet(start + share * (end - start))[0]
+    inner[:, 0] = np.clip(inner[:, 0], start[0], end[0])
+    pairs = product(*[SCALES if free else SCALES[-1:] for free in scaled])
+    tried = [least_squares(heights, np.concatenate([pair, inner.ravel()]), bounds=(low, high)) for pair in pairs]
+    best = min(tried, key=lambda one: float(one.cost))
+    scales = [float(value) if free else None for value, free in zip(best.x[:2], scaled, strict=True)]
     inner = best.x[2:].reshape(-1, 2)
-    segment = Segment(
+    return Segment(
         abscissas=tuple(inner[:, 0].tolist()),
         ordinates=tuple(inner[:, 1].tolist()),
         front_scale=scales[0],
         rear_scale=scales[1],
     )
-    return segment, 2.0 * float(best.cost)
-
-
-class _Trial:
-    """A segment between two joints, whose unknowns are both scale factors and the inner control points (2 + 2 n,)."""
-
-    def __init__(self, like: Segment, joints: tuple[JointVectors, JointVectors], line: Reals) -> None:
-        self.count, self.joints, self.line = len(like.abscissas), joints, line
-        self.along, self.tree = unit(np.diff(line, axis=0)), cKDTree(line)
-        self.scaled = [joint.direction is not None for joint in joints]
-        self.distance = length(joints[1].point - joints[0].point)
-        knots = segment_knots(self.count + sum(map(_kept, joints)))
-        self.rows = basis(knots, DEGREE, SAMPLES)
-        self.places = greville(knots, DEGREE)
-        self.scale_of_reach = float(DEGREE / (knots[DEGREE + 1] + knots[DEGREE + 2]))
-
-    def limits(self) -> tuple[Reals, Reals]:
-        """Lowest and highest unknowns: inner control points stay between the joints along the chord line."""
-        low, high = np.full(2 + 2 * self.count, -np.inf), np.full(2 + 2 * self.count, np.inf)
-        low[:2], high[:2] = (self.scale_of_reach * each for each in REACH_RANGE)
-        low[2::2], high[2::2] = (float(np.real(joint.point[0, 0])) for joint in self.joints)
-        return low, high
-
-    def controls(self, unknowns: Reals) -> Reals:
-        """All control points (k, 2)."""
-        ends = [
-            joint.end(self.distance, np.array([scale])) for joint, scale in zip(self.joints, unknowns[:2], strict=True)
-        ]
-        found: Reals = control_points(ends[0], unknowns[2:].reshape(1, -1, 2), ends[1])[0]
-        return found
-
-    def heights(self, unknowns: Reals) -> Reals:
-        """Distances of the segment's samples from the line."""
-        points = self.rows @ self.controls(unknowns)
-        feet, normals = self.feet(points)
-        return np.asarray(np.sum((points - feet) * normals, axis=1))
-
-    def feet(self, points: Reals) -> tuple[Reals, Reals]:
-        """The nearest places of the line (m, 2), which continues straight past its ends, and its normals there."""
-        first = np.clip(self.tree.query(points)[1], 0, len(self.along) - 1)
-        before = np.clip(first - 1, 0, None)
-        behind = dot(points - self.line[first], self.along[first]) < 0.0
-        piece = np.where(behind, before, first)
-        way = dot(points - self.line[piece], self.along[piece])
-        along = self.along[piece]
-        return self.line[piece] + way[:, None] * along, turned_left(along)
-
-    def projected(self, scales: Reals) -> Reals:
-        """The unknowns with these scale factors whose segment is nearest to the line."""
-        controls = self.controls(np.array([*scales, *[0.0] * (2 * self.count)]))
-        first = _kept(self.joints[0])
-        inner = slice(first, first + self.count)
-        fixed, moving = self.rows @ controls, self.rows[:, inner]
-        start, end = (each.point[0] for each in self.joints)
-        share = self.places[inner, None]
-        points = self.feet(start + share * (end - start))[0]
-        hold = STIFFNESS * np.eye(2 * self.count)
-        for _ in range(PROJECTIONS):
-            feet, normals = self.feet(fixed + moving @ points)
-            slopes = (moving[:, :, None] * normals[:, None]).reshape(len(SAMPLES), -1)
-            wanted = np.sum((feet - fixed) * normals, axis=1)
-            right = np.concatenate([wanted, hold @ points.ravel()])
-            points = np.linalg.lstsq(np.concatenate([slopes, hold]), right, rcond=None)[0].reshape(-1, 2)
-        return np.concatenate([scales, points.ravel()])
-
-
-def _kept(joint: JointVectors) -> int:
-    """Control points that a joint decides at a segment's end."""
-    return 1 + (joint.direction is not None) + (joint.curvature is not None)
