@@ -14,21 +14,10 @@ from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.blade import AXES_HINT, first_blade
 from bladewright.fitting.initial_guess.section import first_section
 from bladewright.fitting.matching.scales import check_bounds
-from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
+from bladewright.fitting.matching.search import Match, Task, searched
 from bladewright.fitting.model_selection.reshaping import reshaped, with_feasible_edges
 from bladewright.fitting.model_selection.selection import FINAL_REDUCTION, THOROUGH_POINTS, selected_match
-from bladewright.fitting.model_selection.structure import FEWEST_THICKNESSES, INITIAL_BLADES, Structure, structure_of
-
-STRAIGHT_CAMBER = {"tangent_*": (0.12, 1.0)}
-"""bounds of a camber without hooks: shorter tangents let it reach an edge by one (design/matching.md)."""
-FEWER_SHARES = (1.0, 0.5)
-"""shares of the control points along the chord that are tried where the nearest design cannot be built"""
-REDUCED_NOISE, REDUCED_POINTS = 3e-3, 2500
-"""noise of the first round with those, of the chord, and their number of points (`REDUCED_POINTS`)"""
-REDUCED_NOTE = (
-    "the nearest design cannot be built: this one's camber bends less at the edges, with {} parameters for {}"
-)
-"""note where the nearest design cannot be built"""
+from bladewright.fitting.model_selection.structure import INITIAL_BLADES, Structure, structure_of
 
 
 def matched_unified(
@@ -48,14 +37,12 @@ def matched_unified(
     check_bounds(first, task.free(first), task.bounds)
     try:
         found, reason = selected_match(task, first, target, like=wanted, guessed=start is None)
-        found, built, leaner = _buildable(
-            task, found, fewer=start is None and like is None and target.parameters is None
-        )
+        found, built = _buildable(task, found)
     except FitError as error:
         if header.blade_count is None and isinstance(guessed, UnifiedBlade) and guessed.blade_count == 1:
             raise FitError(f"{error}; the points go far around x: {AXES_HINT}") from error
         raise
-    return found, built, leaner or reason
+    return found, built, reason
 
 
 def _with_held_values(task: Task, guessed: Design, *, started: bool) -> Design:
@@ -80,12 +67,8 @@ def _free_as(match: Match, _: Design) -> tuple[str, ...]:
     return match.problem.paths
 
 
-def _buildable(task: Task, match: Match, *, fewer: bool) -> tuple[Match, Any, str]:
-    """What the found design builds, and a note where it is not the nearest one.
-
-    Where that is refused, a design is taken that keeps further from what is refused; with `fewer`, at last one whose
-    camber has no hooks at the edges, also with fewer control points along the chord.
-    """
+def _buildable(task: Task, match: Match) -> tuple[Match, Any]:
+    """The match and what it builds; where that is refused, one that keeps further from what is refused."""
     refusal = ""
     for margin_factor in (0.0, 1.0, 30.0, 1000.0):
         if margin_factor:
@@ -94,21 +77,9 @@ def _buildable(task: Task, match: Match, *, fewer: bool) -> tuple[Match, Any, st
             with suppress(FitError):
                 match = searched(fresh, match.design, rounds=2, min_reduction=FINAL_REDUCTION)
         try:
-            return match, match.design.build(), ""
+            return match, match.design.build()
         except DesignError as error:
             refusal = str(error)
-    structure = structure_of(match.design)
-    few = task.thinned(REDUCED_POINTS)
-    straight = replace(few, bounds={**STRAIGHT_CAMBER, **task.bounds})
-    for share in FEWER_SHARES if fewer else ():
-        upper, lower = (max(FEWEST_THICKNESSES, round(share * count)) for count in structure.chordwise)
-        design = with_feasible_edges(reshaped(match.design, replace(structure, chordwise=(upper, lower))))
-        try:
-            other = searched(straight, design, noise=REDUCED_NOISE, min_reduction=ROUGH_REDUCTION)
-            built = other.design.build()
-        except (DesignError, FitError):
-            continue
-        return other, built, REDUCED_NOTE.format(len(other.problem.paths), len(match.problem.paths))
     raise FitError(
         f"the nearest design cannot be built ({refusal}); give a start design, or other numbers of parameters"
     )
