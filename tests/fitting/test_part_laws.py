@@ -18,7 +18,7 @@ from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.model_selection.elimination import LinearModel
 from bladewright.fitting.model_selection.reshaping import reshaped, rich_structure, richest
 from bladewright.fitting.model_selection.structure import resizable_laws, structure_of
-from bladewright.fitting.models.planar import infeasibility
+from bladewright.fitting.models.sectioned import infeasibility
 from bladewright.section.laws import Span
 from machines.meanlines import BLUNT, on_meanline
 from machines.sectioned import COMPRESSOR, DESIGNS, DIFFUSER

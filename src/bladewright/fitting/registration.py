@@ -29,22 +29,24 @@ from bladewright.nurbs.surface import Surface
 GRID = {2: (2000, 1), 3: (241, 61)}
 """places along and across a side from which samples are chosen, by dimension"""
 SAMPLES = 8000
-"""evenly spread samples, about a hundredth of the blade from each other: as near as true footpoints need to start"""
+"""evenly spread samples, about a hundredth of the blade from each other: as near as true footpoints need to start;
+half and twice change nothing measured (design/matching_constants.md)"""
 SEARCH_POINTS, DECIDING_POINTS = 300, 3000
 """points of the cloud that choose among the starts, and those that the nearest is followed with. They bound the time:
 the motion has six unknowns, and of 3000 points its noise is a fiftieth of theirs (design/matching_constants.md)."""
 FIRST_WIDTH, SHRINKING = 0.05, 4.0
-"""first width of the weights, of the blade's extent, and the factor by which it shrinks at most in a step"""
+"""first width of the weights, of the blade's extent, and the factor by which it shrinks at most in a step: at once, a
+prism with outliers is found nine times as far off along its span (design/matching_constants.md)"""
 LEAST_WIDTH, LAST_STEP = 1e-8, 1e-12
-"""least width of the weights, to which footpoints are exact, and last step, which is rounding, of the blade's extent"""
-LONGEST_TURN = 0.3
-"""longest turn in a step [rad], within which a turn is about linear"""
+"""least width of the weights, to which footpoints are exact, and last step, which is rounding, of the blade's extent:
+half and twice change nothing measured (design/matching_constants.md)"""
 WEAKEST_FREEDOM, LARGEST_DEVIATION = 1e-5, 0.01
 """singular value, of the largest, below which the points do not determine a degree of freedom, and standard deviation,
-of the blade's extent, above which their noise does not let them"""
+of the blade's extent, above which their noise does not let them: half and twice change nothing measured
+(design/matching_constants.md)"""
 OTHER_BLADE, LEAST_SHARE = 5e-3, 0.7
 """distance, of the chord, within which points are of this blade: as far as a match may be off where no tolerance is
-asked; and share of the points that must be"""
+asked; and share of the points that must be: half and twice change nothing measured (design/matching_constants.md)"""
 OTHER_BLADE_NOTE = "the cloud does not lie on the design's blade"
 """what a note begins with where the cloud is of another blade"""
 FREEDOMS = {
@@ -213,10 +215,9 @@ def motion_rates(points: Reals, pivot: Reals) -> Reals:
 
 
 def motion_by(change: Reals, pivot: Reals) -> Motion:
-    """The motion by turns about a pivot (d,), of no more than `LONGEST_TURN`, and shifts (k,)."""
+    """The motion by turns about a pivot (d,), and shifts (k,)."""
     dimension = len(pivot)
     turn = change[:-dimension] @ TURN_AXES[dimension]
-    turn *= min(1.0, LONGEST_TURN / max(float(np.sqrt(turn @ turn)), LAST_STEP))
     rotation = np.asarray(Rotation.from_rotvec(turn).as_matrix())[:dimension, :dimension]
     return Motion(rotation=rotation, translation=pivot - rotation @ pivot + change[-dimension:])
 
@@ -235,14 +236,15 @@ AXES_POINTS = 2000
 """points that are looked at; it bounds the time (design/matching_constants.md)."""
 PRISM_THICKNESS = 1e-3
 """thickness of a projection, of the cloud's extent, below which the cloud is a prism: a few times the noise of a
-scan."""
+scan; half and twice change nothing measured (design/matching_constants.md)"""
 NORMAL_NEIGHBOURS, CURVE_NEIGHBOURS = 12, 60
 """nearest points that a plane is laid through, and a parabola of the section, on which many stand above each other:
 with fewer, 16 x 10 points of a stator pass for a prism (design/matching_constants.md)."""
 STEPS, SETTLED = 12, 1e-8
 """steps of the least squares at most, and the last turn [rad] (design/matching_constants.md)"""
 EDGE = 0.1
-"""part of the chord whose thickness is that of an edge"""
+"""part of the chord whose thickness is that of an edge: half and twice change nothing measured
+(design/matching_constants.md)"""
 CURES = (
     "name the axis of rotation (--axis z), give a design of about this blade (--align --start), or move the points "
     "into the machine's axes, x downstream"

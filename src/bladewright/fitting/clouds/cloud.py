@@ -18,11 +18,14 @@ from bladewright.nurbs.basis import Reals
 FEWEST_POINTS = {2: 24, 3: 100}
 """points that a fit of a section and of a blade needs, by dimension; fewer leave most parameters undetermined."""
 FLATTEST = 1e-5
-"""thickness, of its extent, below which a cloud lies on a line or a plane."""
+"""thickness, of its extent, below which a cloud lies on a line or a plane: half and twice change nothing measured
+(design/matching_constants.md)"""
 SHEET_SAMPLE = 3000
-"""points by which a cloud of one side only is recognised; it bounds the time."""
+"""points by which a cloud of one side only is recognised; it bounds the time: half and twice change nothing
+measured (design/matching_constants.md)"""
 THINNEST_BLADE = 1.3e-3
-"""roughness, of its width, below which a cloud is a smooth sheet: one side and no blade."""
+"""roughness, of its width, below which a cloud is a smooth sheet: one side and no blade; half and twice change nothing
+measured (design/matching_constants.md)"""
 COMPARED_POINTS = 6000, 2000
 """points among which neighbours are joined: many part blades that stand close, few join the rows of one
 (design/matching_constants.md)."""

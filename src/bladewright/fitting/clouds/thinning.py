@@ -14,7 +14,8 @@ NEIGHBOURS, FEWEST_KNOWING = 16, 3
 that are strewn over a twentieth of the extent half to nine tenths are isolated, and at most 3 of 5,000 good points
 (design/matching.md)"""
 ROUNDS = 6
-"""times that isolated points are sought among the rest"""
+"""times that isolated points are sought among the rest: half and twice change nothing measured
+(design/matching_constants.md)"""
 
 
 def random_subset(count: int, most: int) -> NDArray[np.intp]:

@@ -23,7 +23,7 @@ from bladewright.fitting.matching.search import Match, Task, searched
 from bladewright.fitting.model_selection.selection import GUESS_NOISE, selected_match
 from bladewright.fitting.model_selection.structure import INITIAL_BLADES, structure_of
 from bladewright.fitting.models.blunt_edges import sides_of
-from bladewright.fitting.models.planar import infeasibility
+from bladewright.fitting.models.sectioned import infeasibility
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import Span, law_points

@@ -9,13 +9,15 @@ from bladewright.blade.design.row_design import Arrangement, LengthUnit
 from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.designs import Design
 from bladewright.fitting.families import (
-    camber_angle,
-    curvature_meanline,
     part_laws,  # noqa: F401 - makes the laws of parts known
     profile,
     segmented,
-    suction_pressure,
-    wedge_diffuser,
+)
+from bladewright.fitting.families.first_parts import (
+    camber_angle_parts,
+    curvature_meanline_parts,
+    suction_pressure_parts,
+    wedge_diffuser_parts,
 )
 from bladewright.fitting.families.section_shape import SectionShape
 from bladewright.nurbs.basis import Reals
@@ -74,11 +76,13 @@ FAMILIES = {
     kind.name: kind
     for kind in (
         FitFamily(
-            name="curvature-meanline", section=CurvatureMeanlineSection, first_parts=curvature_meanline.first_parts
+            name="curvature-meanline",
+            section=CurvatureMeanlineSection,
+            first_parts=curvature_meanline_parts,
         ),
-        FitFamily(name="suction-pressure", section=SuctionPressureSection, first_parts=suction_pressure.first_parts),
-        FitFamily(name="wedge-diffuser", section=WedgeDiffuserSection, first_parts=wedge_diffuser.first_parts),
-        FitFamily(name="camber-angle", section=CamberAngleSection, first_parts=camber_angle.first_parts),
+        FitFamily(name="suction-pressure", section=SuctionPressureSection, first_parts=suction_pressure_parts),
+        FitFamily(name="wedge-diffuser", section=WedgeDiffuserSection, first_parts=wedge_diffuser_parts),
+        FitFamily(name="camber-angle", section=CamberAngleSection, first_parts=camber_angle_parts),
         FitFamily(
             name="profile",
             section=ProfileSection,

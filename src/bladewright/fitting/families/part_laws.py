@@ -13,6 +13,7 @@ from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.designs import Law, Point
 from bladewright.errors import DesignError
+from bladewright.fitting.families.section_shape import FINE_PLACES
 from bladewright.fitting.free_parameters import EDGES, WALLS, sliding_coordinate
 from bladewright.fitting.initial_guess.slices import plain_law
 from bladewright.fitting.model_selection.reshaping import reshaped, richest
@@ -26,7 +27,7 @@ from bladewright.fitting.model_selection.structure import (
     resizable_laws,
     structure_of,
 )
-from bladewright.fitting.models.planar import SINGLE_SECTION
+from bladewright.fitting.models.sectioned import SINGLE_SECTION
 from bladewright.numerics.elementary import cumulative_length
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber_angle import CamberAngle
@@ -38,13 +39,14 @@ from bladewright.section.suction_pressure.part import SuctionPressure
 RICH_CHORDWISE = {2: 12, 3: 8}
 """control points of a law along the chord in a rich structure, by dimension."""
 RICH_SPAN = 5
-"""control points of a law along the span in a rich structure."""
+"""control points of a law along the span in a rich structure: half and twice change nothing measured
+(design/matching_constants.md)"""
 RICH_CURVE = 8
-"""points on an edge curve or a wall of a rich structure: as many as on a channel's edges"""
-CURVE_SAMPLES = 2001
-"""places between which an edge curve or a wall is linear: within 1e-7 of its length"""
+"""points on an edge curve or a wall of a rich structure: as many as on a channel's edges; half and twice
+change nothing measured (design/matching_constants.md)"""
 FEWEST_ON_WALL = 5
-"""points of a wall at least: its ends, and three beside the blade"""
+"""points of a wall at least: its ends, and three beside the blade; half and twice change nothing measured
+(design/matching_constants.md)"""
 MOST_CHORDWISE = 24
 """control points of a law along the chord at most; it bounds the time: half and twice change nothing
 (design/matching_constants.md)."""
@@ -243,7 +245,7 @@ class EdgeCurve(PartLaw):
         curve = getattr(design, self.name)
         if self.counts_of(design) == counts:
             return curve
-        line = np.real(curve.line(1.0).values(np.linspace(0.0, 1.0, CURVE_SAMPLES)))
+        line = np.real(curve.line(1.0).values(np.linspace(0.0, 1.0, FINE_PLACES)))
         line = line[:, ::-1] if sliding_coordinate(design, self.name) == "r" else line
         order = np.argsort(line[:, 0])
         at = np.linspace(line[0, 0], line[-1, 0], counts[0])
@@ -279,7 +281,7 @@ class WallCurve(PartLaw):
         curve = law_at(design, self.name)
         if self.counts_of(design) == counts:
             return curve
-        line = np.real(curve.line(1.0).values(np.linspace(0.0, 1.0, CURVE_SAMPLES)))
+        line = np.real(curve.line(1.0).values(np.linspace(0.0, 1.0, FINE_PLACES)))
         way = cumulative_length(line)
         rows = np.stack([np.interp(self._stations(*counts), way / way[-1], axis) for axis in line.T], axis=-1)
         return replace(curve, points=tuple(Point(*row) for row in rows.tolist()))

@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from bladewright.errors import DesignError
 from bladewright.fitting.families.section_shape import SectionShape
-from bladewright.fitting.models.planar import SINGLE_SECTION
+from bladewright.fitting.models.sectioned import SINGLE_SECTION
 from bladewright.numerics.elementary import cross2, dot, length, turned_left, unit
 from bladewright.nurbs.basis import Reals, basis, greville
 from bladewright.section.laws import law_points

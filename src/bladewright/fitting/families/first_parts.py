@@ -1,0 +1,252 @@
+"""Where sections of the families that are one part begin: the part of numbers nearest to a section."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from scipy.optimize import lsq_linear
+
+from bladewright.fitting.families.section_shape import PLACES, SectionShape
+from bladewright.fitting.models.sectioned import SINGLE_SECTION
+from bladewright.nurbs.basis import Reals
+from bladewright.section.camber_angle import ANGLE, HALF_THICKNESS, CamberAngle
+from bladewright.section.curvature_meanline import CurvatureMeanline
+from bladewright.section.laws import law_basis, law_points
+from bladewright.section.suction_pressure.part import SuctionPressure, skeleton_of
+from bladewright.section.suction_pressure.side import DEGREE, default_places, places_off_line, side_knots
+from bladewright.section.thickness.modified_naca import ModifiedNaca
+from bladewright.section.thickness.quartic import QuarticSpline
+from bladewright.section.thickness.wennerstrom import RATIOS, Wennerstrom
+from bladewright.section.wedge_diffuser import WedgeDiffuser
+
+CAMBER_ANGLES = tuple(
+    CamberAngle(camber_angle=(0.0,) * 4, half_thickness=(0.02,) * 5, trailing_edge=edge)
+    for edge in ("round", "blunt", "sharp")
+)
+"""parts whose structures are tried where none is given: one for each kind of trailing edge"""
+
+
+def camber_angle_parts(shape: SectionShape, like: CamberAngle | None) -> Sequence[CamberAngle]:
+    """The parts nearest to a section by least squares of its angle and of its half thickness."""
+    return [_camber_angle(shape, each) for each in (CAMBER_ANGLES if like is None else [like])]
+
+
+def _camber_angle(shape: SectionShape, like: CamberAngle) -> CamberAngle:
+    # fractions of the meridional extent
+    fraction = PLACES - shape.camber(PLACES) * np.tan(shape.stagger)
+    rows = law_basis(len(like.camber_angle), np.clip(fraction, 0.0, 1.0))
+    angles = np.degrees(shape.stagger + np.linalg.lstsq(rows, shape.angles(PLACES), rcond=None)[0])
+    half = shape.half(PLACES)
+    outline = replace(like, half_thickness=(0.01,) * len(like.half_thickness)).outline(SINGLE_SECTION)
+    weights, places = (np.real(each.controls)[0] for each in (outline.weights, outline.places))
+    rows = law_basis(len(weights), np.linspace(0.0, 1.0, 2 * len(half)))
+    at, shares = rows @ places / (rows @ weights), rows * weights / (rows @ weights)[:, None]
+    free = shares[:, 1 : 1 + len(like.half_thickness)]
+    # beside a round edge the half thickness is far above what is left of it further on
+    limits = 0.1 * float(np.max(half)), 0.99 * HALF_THICKNESS.high
+    heights = lsq_linear(free, np.interp(at, fraction, half), bounds=limits).x
+    return replace(
+        like,
+        camber_angle=tuple(np.clip(angles, 0.99 * ANGLE.low, 0.99 * ANGLE.high).tolist()),
+        half_thickness=tuple(heights.tolist()),
+    )
+
+
+_BODY: dict[str, Any] = {"maximum_thickness": 0.1, "maximum_thickness_at": 0.4}
+_ROUND: dict[str, Any] = {**_BODY, "leading_edge_thickness": 0.02, "trailing_edge_thickness": 0.02}
+CURVATURE_MEANLINES = tuple(
+    CurvatureMeanline(metal_angle_in=0.0, metal_angle_out=0.0, curvature=(1.0,) * 4, thickness=law)
+    for law in (
+        # the end that is straight is held: where it changes, edges of different thickness make the shape jump
+        Wennerstrom(**_ROUND, straight_end="leading"),
+        Wennerstrom(**_ROUND, straight_end="trailing"),
+        Wennerstrom(**_ROUND, straight_end="leading", trailing_edge="blunt"),
+        Wennerstrom(**_ROUND, straight_end="trailing", trailing_edge="blunt"),
+        ModifiedNaca(**_BODY, trailing_edge_thickness=0.02, trailing_edge_slope=-0.1),
+        QuarticSpline(**_ROUND),
+        QuarticSpline(**_ROUND, trailing_edge="sharp"),
+    )
+)
+"""parts whose structures are tried where none is given"""
+STRAIGHT = np.radians(0.5)
+"""turning of a mean line [rad] below which the shape of its second derivative cannot be seen"""
+LEAST_CURVATURE = 0.1
+"""smallest control point of the second derivative to begin with, of the largest: of one sign, it always has a shape;
+half and twice change nothing measured (design/matching_constants.md)"""
+
+
+def curvature_meanline_parts(shape: SectionShape, like: CurvatureMeanline | None) -> Sequence[CurvatureMeanline]:
+    """The parts nearest to a section: its angles, the bends of its mean line, and its thickness."""
+    ends = np.degrees(np.clip(shape.stagger + shape.angles(np.array([0.0, 1.0])), -1.5, 1.5))
+    found = []
+    for each in CURVATURE_MEANLINES if like is None else [like]:
+        inner = [_number(place) for place in each.curvature_places]
+        places = np.array([0.0, *inner, 1.0]) if inner else np.linspace(0.0, 1.0, len(each.curvature))
+        found.append(
+            replace(
+                each,
+                metal_angle_in=float(ends[0]),
+                metal_angle_out=float(ends[1]),
+                curvature=tuple(_curvatures(shape, places).tolist()) if each.curvature else (),
+                curvature_places=tuple(inner),
+                thickness=replace(each.thickness, **_thickness(shape, each.thickness)),
+                thickness_multiplier=(0.0,) * len(each.thickness_multiplier),
+            )
+        )
+    return found
+
+
+def _curvatures(shape: SectionShape, places: Reals) -> Reals:
+    """The second derivative of the mean line at places, of its largest."""
+    bends = shape.camber.deriv(2)(places)
+    if abs(np.ptp(shape.angles(np.array([0.0, 1.0])))) < STRAIGHT:
+        return np.ones(len(places))
+    bends = bends / bends[np.argmax(bends**2)]
+    return np.asarray(np.maximum(bends, LEAST_CURVATURE))
+
+
+def _thickness(shape: SectionShape, law: Any) -> dict[str, Any]:
+    """The fields of a thickness law that a section shows."""
+    maximum, at = shape.thickest
+    # a half thickness of an ellipse's radius of curvature b^2 / a, with a = ratio b
+    ends = [2.0 * radius * ratio for radius, ratio in zip(shape.radii, _ratios(law), strict=True)]
+    first, tail, last, end = (float(each) for each in shape.half(np.array([0.03, 0.85, 0.95, 0.985])))
+    known: dict[str, Any] = {
+        "maximum_thickness": maximum,
+        "maximum_thickness_at": float(np.clip(at, 0.15, 0.8)),
+        "leading_edge_thickness": ends[0],
+        "trailing_edge_thickness": 2.0 * last if _field(law, "trailing_edge") == "blunt" else ends[1],
+    }
+    if isinstance(law, ModifiedNaca):
+        # the radius of the leading edge is 1.1019 (thickness I / 6)^2 (NACA Report 492)
+        index = 6.0 * np.sqrt(shape.radii[0] / 1.1019) / maximum
+        known |= {
+            "leading_edge_index": float(np.clip(index, 1.0, 11.0)),
+            "trailing_edge_slope": float(np.clip(10.0 * (last - tail), -1.0, -0.01)),
+            "trailing_edge_thickness": 2.0 * end,
+        }
+    if isinstance(law, QuarticSpline):
+        # this law works with its maximum near 0.3
+        known |= {
+            "maximum_thickness_at": 0.3,
+            "leading_edge_thickness": 2.0 * first,
+            "trailing_edge_thickness": 2.0 * last,
+        }
+    for name in ("leading_edge_thickness", "trailing_edge_thickness"):
+        known[name] = float(np.clip(known[name], 0.02 * maximum, 0.6 * maximum))
+    return {name: value for name, value in known.items() if _field(law, name) is not None}
+
+
+def _ratios(law: Any) -> tuple[float, float]:
+    """Ratios of the axes of elliptic edges."""
+    given = (_field(law, f"{edge}_ratio") for edge in RATIOS)
+    first, last = (_number(ratio or usual) for ratio, usual in zip(given, RATIOS.values(), strict=True))
+    return first, last
+
+
+def _field(law: Any, name: str) -> Any:
+    return vars(law).get(name)
+
+
+def _number(law: Any) -> float:
+    return float(np.mean(law_points(law)))
+
+
+SUCTION_PRESSURE = SuctionPressure(
+    stagger_angle=0.0,
+    metal_angle_in=0.0,
+    metal_angle_out=0.0,
+    leading_edge_radius=0.01,
+    leading_edge_wedge=10.0,
+    trailing_edge_radius=0.01,
+    trailing_edge_wedge=6.0,
+    suction_tangent_in=0.08,
+    suction_tangent_out=0.08,
+    suction_heights=(0.1,) * 4,
+    pressure_tangent_in=0.08,
+    pressure_tangent_out=0.08,
+    pressure_heights=(0.0,) * 4,
+)
+"""the part whose structure is tried where none is given"""
+WEDGES = (25.0, 50.0, 75.0)
+"""wedge angles of the leading edge that are tried [deg]: how far an edge extends is ambiguous, as the sides beside it
+may be taken for parts of it (design/matching_constants.md)"""
+
+
+def suction_pressure_parts(shape: SectionShape, like: SuctionPressure | None) -> Sequence[SuctionPressure]:
+    """The parts nearest to a section: its edges by their radii, and sides at its heights over the skeleton line."""
+    if like is not None:
+        tried = [like]
+    else:
+        sided = replace(SUCTION_PRESSURE, suction_side="upper" if shape.most_cambered[0] > 0.0 else "lower")
+        tried = [replace(sided, skeleton="pseudo"), sided]
+    return [_suction_pressure(shape, each, wedge) for each in tried for wedge in WEDGES]
+
+
+def _suction_pressure(shape: SectionShape, like: SuctionPressure, wedge: float) -> SuctionPressure:
+    tail = shape.half(np.array([0.85, 0.95]))
+    last = 2.0 * np.degrees(np.arctan((tail[0] - tail[1]) / 0.1))
+    ends = np.degrees(np.clip(shape.stagger + shape.angles(np.array([0.0, 1.0])), -1.5, 1.5))
+    values: dict[str, Any] = {
+        "stagger_angle": float(np.degrees(shape.stagger)),
+        "leading_edge_wedge": wedge,
+        "trailing_edge_wedge": float(np.clip(last, 2.0, 40.0)),
+    }
+    for end, (edge, angle) in enumerate((("leading_edge", "metal_angle_in"), ("trailing_edge", "metal_angle_out"))):
+        values |= {
+            angle: float(ends[end]),
+            f"{edge}_radius": float(np.clip(shape.radii[end], 1e-3, 0.15)),
+            f"{edge}_stretch": 1.0,
+            f"{edge}_skew": 0.0,
+        }
+    part = replace(like, **values)
+    sides = (shape.upper, shape.lower) if part.suction_side == "upper" else (shape.lower, shape.upper)
+    line = np.real(skeleton_of(part, SINGLE_SECTION))[0]
+    changes: dict[str, Any] = {}
+    for name, side in zip(("suction", "pressure"), sides, strict=True):
+        heights = getattr(part, f"{name}_heights")
+        knots = side_knots(len(heights), getattr(part, f"{name}_knots"))
+        for way, width in (("in", knots[DEGREE + 1]), ("out", 1.0 - knots[-DEGREE - 2])):
+            if getattr(part, f"{name}_tangent_{way}") is not None:
+                changes[f"{name}_tangent_{way}"] = float(width) / DEGREE
+        if heights:
+            inner = side[1:-1]
+            along, above = places_off_line(line, inner, np.clip(inner[:, 0], 0.01, 0.99))
+            places = _places(getattr(part, f"{name}_places"), knots)
+            changes[f"{name}_heights"] = tuple(np.interp(places, along, above).tolist())
+    if part.pressure_thickness:
+        knots = side_knots(len(part.pressure_thickness), part.pressure_knots)
+        places = _places(part.pressure_places, knots)
+        changes["pressure_thickness"] = tuple(np.maximum(2.0 * shape.half(places), 1e-3).tolist())
+    return replace(part, **changes)
+
+
+def _places(given: Any, knots: Reals) -> Reals:
+    return np.array([_number(law) for law in given]) if given else default_places(knots)
+
+
+WEDGE_DIFFUSERS = (
+    WedgeDiffuser(stagger_angle=0.0, leading_edge_radius=0.01, trailing_edge_radius=0.01, wedge_angle=8.0),
+    WedgeDiffuser(stagger_angle=0.0, leading_edge_radius=0.01, trailing_edge_radius=0.05),
+)
+"""parts whose structures are tried where none is given: with a back face, and without"""
+
+
+def wedge_diffuser_parts(shape: SectionShape, like: WedgeDiffuser | None) -> Sequence[WedgeDiffuser]:
+    """The vanes nearest to a section: its stagger, the line through its half thickness, and its edges."""
+    straight = np.linspace(0.2, 0.8, 31)
+    opening, first = np.polyfit(straight, shape.half(straight), 1)
+    last = float(np.clip(first + opening, 2e-3, 0.3))
+    angle = float(np.clip(np.degrees(2.0 * np.arctan(opening)), 1.0, 60.0))
+    return [
+        replace(
+            each,
+            stagger_angle=float(np.degrees(shape.stagger)),
+            leading_edge_radius=float(np.clip(first, 1e-3, 0.2)),
+            # the corners of a back face are rounded by much less than its half width
+            trailing_edge_radius=last if each.wedge_angle is None else 0.2 * last,
+            wedge_angle=None if each.wedge_angle is None else angle,
+        )
+        for each in (WEDGE_DIFFUSERS if like is None else [like])
+    ]
