@@ -9,8 +9,8 @@ from scipy.spatial import cKDTree
 from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.designs import Point
 from bladewright.fitting.assessment.acceptance import MatchTarget
+from bladewright.fitting.families.first_parts import profile_parts, through_points
 from bladewright.fitting.families.kinds import FAMILIES, DesignHeader
-from bladewright.fitting.families.profile import first_parts, through_points
 from bladewright.fitting.families.section_shape import section_shape
 from bladewright.fitting.families.sections import _through_points, criterion, designs_of
 from bladewright.fitting.free_parameters import EDGES, FreeParameters
@@ -95,7 +95,7 @@ def test_an_outline_of_points_follows_what_no_profile_of_a_kind_does():
     some, kind, header = task(section(STATOR)), FAMILIES["profile"], DesignHeader(name="found", length_unit="mm")
     shape = section_shape(section(STATOR).build())
     found = [
-        searched(some, each, rounds=1) for each in designs_of(kind, shape, first_parts(shape, None)[:3], header, some)
+        searched(some, each, rounds=1) for each in designs_of(kind, shape, profile_parts(shape, None)[:3], header, some)
     ]
     target = MatchTarget(parameters=26)
     outline, _ = _through_points(some, kind, found, header, target, found[0])

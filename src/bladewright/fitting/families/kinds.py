@@ -10,13 +10,14 @@ from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.designs import Design
 from bladewright.fitting.families import (
     part_laws,  # noqa: F401 - makes the laws of parts known
-    profile,
     segmented,
 )
 from bladewright.fitting.families.first_parts import (
     camber_angle_parts,
     curvature_meanline_parts,
+    profile_parts,
     suction_pressure_parts,
+    through_points,
     wedge_diffuser_parts,
 )
 from bladewright.fitting.families.section_shape import SectionShape
@@ -86,8 +87,8 @@ FAMILIES = {
         FitFamily(
             name="profile",
             section=ProfileSection,
-            first_parts=profile.first_parts,
-            through_points=profile.through_points,
+            first_parts=profile_parts,
+            through_points=through_points,
         ),
         FitFamily(
             name="segmented",
