@@ -51,6 +51,16 @@ def test_control_points_of_a_wider_law_are_the_embedding_of_those_of_a_narrower_
         assert embedded == pytest.approx(np.array(many_values), rel=1e-9, abs=1e-9), law.name
 
 
+@pytest.mark.parametrize("samples", [8, 16, 40])
+def test_a_sampled_structure_needs_no_further_samples_and_loses_no_control_points(samples):
+    design = replace(MADE, samples=samples)
+    own = structure_of(design)
+    found = rich_structure(design, design.parameters(), 10_000, sampled=True)
+    assert found.samples <= max(samples, max(own.chordwise) + 4)
+    assert all(few <= count for few, count in zip(own.chordwise, found.chordwise, strict=True))
+    assert max(found.chordwise) <= rich_structure(design, design.parameters(), 10_000).chordwise[0]
+
+
 def test_a_law_at_stations_keeps_them():
     design = AXIAL["unified"]
     names = {law.name for law in resizable_laws(design)}

@@ -16,6 +16,7 @@ from bladewright.fitting.model_selection.structure import (
     COMPARED_PLACES,
     MOST_SPAN,
     SPANWISE,
+    SPARE_SAMPLES,
     Structure,
     law_field,
     resizable_laws,
@@ -191,12 +192,20 @@ RICH_CHANNEL = (8, 8, 6, 6)
 """control points of the edges, of hub and of shroud."""
 
 
-def rich_structure(design: Design, free: Collection[str], points: int, rows: int = MOST_SPAN) -> Any:
+def rich_structure(
+    design: Design, free: Collection[str], points: int, rows: int = MOST_SPAN, *, sampled: bool = False
+) -> Any:
     """A structure with more control points in every law than a match of so many points is likely to need.
 
-    Along the span it has no more of them than `rows` of points. Laws of which nothing is `free` keep theirs.
+    Along the span it has no more of them than `rows` of points, and where it is to be `sampled`, along the chord no
+    more than a design's own samples determine. Laws of which nothing is `free` keep theirs.
     """
-    return _towards(richest(design), design, free, points, rows)
+    whole = richest(design)
+    if sampled and isinstance(whole, Structure):
+        own, determined = structure_of(design).chordwise, whole.samples - SPARE_SAMPLES
+        upper, lower = (max(few, min(count, determined)) for few, count in zip(own, whole.chordwise, strict=True))
+        whole = replace(whole, chordwise=(upper, lower))
+    return _towards(whole, design, free, points, rows)
 
 
 def wider_structure(

@@ -104,7 +104,8 @@ def selected_match(
         rich = found
     else:
         holds = partial(selection.holds, tolerance=target.tolerance or np.inf)
-        rich = selection.rich(found, _near_enough if target.open else holds, slim=not target.open)
+        enough, sampled = _near_enough if target.open else holds, target.parameters is None
+        rich = selection.rich(found, enough, slim=not target.open, sampled=sampled)
     if len(rich.rows) < len(several.points):
         # no richer one has a shape, or none is needed: the first match, of few points, stands
         rich = evaluated(several, rich.design, noise=rich.rms)
@@ -212,18 +213,21 @@ class _Selection:
         found = model.prediction(model.counts)
         return found is not None and reweighted_prediction(model, found, relative).largest <= PREDICTED * relative
 
-    def rich(self, match: Match, enough: Callable[[Match], bool], *, slim: bool) -> Match:
+    def rich(self, match: Match, enough: Callable[[Match], bool], *, slim: bool, sampled: bool = False) -> Match:
         """The match of a rich structure, and of ever richer ones until one is near enough or comes hardly nearer.
 
-        Where points are exact, or these are to be `slim`, a structure loses what it does not need before it is widened.
+        Where it is to be `sampled`, the first has no more control points along the chord than the samples of a section
+        determine: more of them move its samples towards the edges, where laws then have to bend like a nose. In space,
+        where points are exact or these are to be `slim`, a structure loses what it does not need before it is widened.
         """
         found, rounds = match, QUICK_ROUNDS + 1
         shown = len(self.task.points), rows_shown(match.state.footpoints.v[match.rows])
         while found is match or (has_systematic_misfit(found) and not enough(found)):
             try:
-                slim = slim or is_exact(found)
+                slim = self.task.dimension == 3 and (slim or is_exact(found))
                 about = self._without_surplus(found) if slim and found is not match else found.design
-                widened = rich_structure if found is match else partial(wider_structure, slim=slim)
+                first = partial(rich_structure, sampled=sampled)
+                widened = first if found is match else partial(wider_structure, slim=slim)
                 design = with_feasible_edges(reshaped(about, widened(about, self.task.free(about), *shown)))
                 richer = searched(
                     self.task, design, noise=found.rms, rounds=rounds, min_reduction=ROUGH_REDUCTION, fading=True
