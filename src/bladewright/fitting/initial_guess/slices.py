@@ -16,6 +16,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
+from bladewright.numerics.robust import TUKEY_WIDTH, median_deviation
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber import bernstein
 from bladewright.section.laws import law_basis
@@ -24,8 +25,6 @@ TURNS = 12
 """times that points are assigned to the sides; most clouds settle in five (design/first_guesses.md)"""
 RIDGE = 1e-3
 """weight that holds coefficients which the points leave open, of the weight of all points (design/first_guesses.md)"""
-TUKEY = 4.685
-"""distance, in standard deviations, from which a point does not count (Holland and Welsch 1977)"""
 STEEPEST = np.radians(86.0)
 """steepest angle of a chord or a camber [rad]; the family's own limit is 90 degrees (design/first_guesses.md)"""
 BANDS, BAND_POINTS = 8, 12
@@ -104,7 +103,7 @@ def slices_of(plane: PlanePoints, turn: SpanLaw, stations: Reals, count: int) ->
     cosine, sine = np.cos(direction), np.sin(direction)
     rows, at = law_basis(count, plane.v), law_basis(count, stations)
     a, b = plane.points.T
-    stacking = np.linalg.lstsq(rows, b, rcond=None)[0]
+    stacking = fitted_law(b, plane.v, count)
     b = b - rows @ stacking
     along, across = cosine * a + sine * b, -sine * a + cosine * b
     low, high = (_envelope(plane, rows, along, sign) for sign in (-1.0, 1.0))
@@ -126,8 +125,8 @@ def slices_of(plane: PlanePoints, turn: SpanLaw, stations: Reals, count: int) ->
         # where the sides meet, noise may cross them
         now = off * np.sign(half) > 0.0
         left = np.abs(np.abs(off) - np.abs(half))
-        scale = 1.4826 * float(np.median(left)) + 1e-12
-        weight = np.asarray(even * np.maximum(1.0 - (left / (TUKEY * scale)) ** 2, 0.05))
+        width = TUKEY_WIDTH * (median_deviation(left) + 1e-12)
+        weight = np.asarray(even * np.maximum(1.0 - (left / width) ** 2, 0.05))
         if np.array_equal(now, upper):
             break
         upper = now
@@ -150,13 +149,13 @@ def slices_of(plane: PlanePoints, turn: SpanLaw, stations: Reals, count: int) ->
 
 
 def _outermost(plane: PlanePoints, rows: Reals, places: Reals, ahead: Reals, near: NDArray[np.intp]) -> Reals:
-    """Control points (count, 2) of the law of the edge: the places of the points that stand furthest ahead."""
+    """Control points (count, k) of the law of places (n, k) of the points that stand furthest ahead, of those near."""
     chosen = []
     for band in plane.bands:
         some = np.intersect1d(band, near)
         chosen.append(some[np.argsort(-ahead[some])[: max(1, len(band) // EDGE_SHARE)]])
     which = np.concatenate(chosen)
-    return np.stack([_ridge(rows[which], places[which, i], np.ones(len(which))) for i in (0, 1)], axis=-1)
+    return np.stack([_ridge(rows[which], each, np.ones(len(which))) for each in places[which].T], axis=-1)
 
 
 def _placed(
@@ -198,7 +197,7 @@ def chord_direction(plane: PlanePoints) -> SpanLaw:
         angles.append(float(np.arctan(axis[1] / axis[0])) if axis[0] else np.pi / 2.0)
         places.append(float(np.mean(plane.v[rows])))
     count = min(3, len(places))
-    law = np.linalg.lstsq(law_basis(count, np.array(places)), np.array(angles), rcond=None)[0]
+    law = fitted_law(np.array(angles), np.array(places), count)
     return lambda v: np.clip(law_basis(count, v) @ law, -STEEPEST, STEEPEST)
 
 
@@ -221,8 +220,7 @@ def _envelope(plane: PlanePoints, rows: Reals, along: Reals, sign: float) -> Rea
     """Control points of the law along which the outermost points along the chord stand."""
     if plane.flat:
         return np.array([sign * np.max(sign * along)])
-    chosen = np.concatenate([band[np.argsort(-sign * along[band])[: max(1, len(band) // 60)]] for band in plane.bands])
-    return _ridge(rows[chosen], along[chosen], np.ones(len(chosen)))
+    return _outermost(plane, rows, along[:, None], sign * along, np.arange(len(along)))[:, 0]
 
 
 def _even(t: Reals, plane: PlanePoints) -> Reals:

@@ -25,13 +25,15 @@ PLACES_ALONG_SPAN: Reals = np.linspace(0.0, 1.0, 65)
 """places along the span among which those are sought where an edge's radius is nearest to what the thickness holds:
 five for each joint of the longest law (`MOST_SPAN` control points)."""
 FOLD_GRID = (21, 21)
-"""places along and across the channel at which it is checked for folding; a fold between them is refused by `build`."""
+"""places along and across the channel at which it is checked for folding; a fold between them is refused by `build`;
+half and twice change nothing measured (design/matching_constants.md)"""
 COARSE_SEARCH, KNOT_SLACK = 3.0, 100.0
 """tolerance of a search, of the design's own, from which knots may miss walls and edges by the factor `KNOT_SLACK` of
 what `build` promises. On Rotor 67 it saves half of the derivatives' time and changes distances by 1e-5 mm
 (design/matching.md)."""
 SMALLEST_JACOBIAN = 0.02
-"""smallest Jacobian of the channel, of its median: a channel that comes nearer to folding over is held there."""
+"""smallest Jacobian of the channel, of its median: a channel that comes nearer to folding over is held there;
+half and twice change nothing measured (design/matching_constants.md)"""
 
 
 @final
