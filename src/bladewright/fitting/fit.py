@@ -29,7 +29,8 @@ from bladewright.fitting.families.unified import matched_unified
 from bladewright.fitting.finishing import Finishing, without_finishing
 from bladewright.fitting.free_parameters import FreeParameters, free_parameters_of
 from bladewright.fitting.initial_guess.blade import spans_along_y
-from bladewright.fitting.matching.search import COARSEST_TOLERANCE, Match, Task
+from bladewright.fitting.matching.noise import EXACT
+from bladewright.fitting.matching.search import Match, Task
 from bladewright.fitting.placing import Matched, PlacedTask, nearest_of, realigned, shown_of
 from bladewright.fitting.registration import axis_motion, composed, found_axes, registration
 from bladewright.nurbs.basis import Reals
@@ -68,7 +69,7 @@ UPRIGHT_NOTE = (
 )
 """note where a blade was turned so"""
 INTERRUPTED_NOTE = (
-    f"the search was interrupted, so the design's tolerance is at least {COARSEST_TOLERANCE:g} of the chord, which "
+    f"the search was interrupted, so the design's tolerance is at least {EXACT:g} of the chord, which "
     "builds in a moment: lower it for finer surfaces"
 )
 """note on a blade that a search had found when it was interrupted"""

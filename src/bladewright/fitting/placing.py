@@ -36,10 +36,11 @@ GAIN = 0.9
 """ratio of the misfits after and before a realignment above which it is not worth a match
 (design/matching_constants.md)"""
 LONGEST_STEP = 0.2
-"""longest step of the motion, of the cloud's extent, within which residuals and shape are nearly linear: some 10 deg"""
+"""longest step of the motion, of the cloud's extent, within which residuals and shape are nearly linear: some 10 deg.
+Half and twice change nothing measured (design/matching_constants.md)."""
 ON_BOUND, WEAKEST_SLOPE = 1e-9, 1e-10
 """distance from a bound, of a parameter's scale, within which it is held, and singular value of the slopes, of the
-largest, below which it is rounding"""
+largest, below which it is rounding: half and twice change nothing measured (design/matching_constants.md)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

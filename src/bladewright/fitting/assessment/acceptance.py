@@ -20,6 +20,7 @@ from bladewright.fitting.assessment.estimates import ParameterEstimates
 from bladewright.fitting.assessment.measurement import Measurement
 from bladewright.fitting.assessment.report import with_unit
 from bladewright.fitting.initial_guess.blade import AXES_HINT
+from bladewright.fitting.matching.noise import EXACT
 from bladewright.fitting.matching.search import Match
 from bladewright.nurbs.basis import Reals
 
@@ -34,9 +35,6 @@ KNOWN = 1e-3
 Bands of matches that are as near are 8e-4 at most, of those that are off between their points 3e-3 at least
 (design/matching.md). Edges may be known to the largest deviation that is trusted: a sharp tip moves by more than its
 sides."""
-EXACT = 1e-4
-"""largest deviation, of the chord, up to which nothing is said of how it goes on from point to point: exact points are
-matched to that."""
 SHARED_VARIANCE = 0.5
 """share of the variance that neighbours have in common from which more of a deviation is the shape's than noise."""
 LARGEST_OUTLIER_SHARE = 0.1

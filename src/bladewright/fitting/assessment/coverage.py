@@ -12,17 +12,17 @@ from bladewright.fitting.assessment.estimates import ParameterEstimates
 from bladewright.fitting.free_parameters import parameters_of_curve
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS
 from bladewright.fitting.matching.footpoints import Footpoints, Side, footpoints_at
+from bladewright.fitting.matching.noise import EXACT
 from bladewright.fitting.matching.search import Match
+from bladewright.numerics.robust import DEVIATION_OVER_MEDIAN
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
 
-ROW_SPREAD = 1e-4
-"""spread of the points at an end, of the chord, from which they stand in no row; and of the cloud's noise
-(`ROW_SPREAD_OF_NOISE`): a noisy row is a row."""
 ROW_SPREAD_OF_NOISE = 2.0
-"""the same, of the cloud's noise: a noisy row is a row all the same."""
-WIDTH_OVER_SPREAD = 2.7
-"""width of evenly scattered values over 1.4826 times the median of their distances from the middle"""
+"""spread of the points at an end, of the cloud's noise, from which they stand in no row: a noisy row is a row all the
+same."""
+WIDTH_OVER_SPREAD = 4.0 / DEVIATION_OVER_MEDIAN
+"""width of evenly scattered values over the deviation that the median of their distances from the middle tells"""
 EDGE_PARAMETERS = {"leading edge": 0.0, "trailing edge": 1.0}
 """u of the two edges"""
 SPAN_PARTS = 5
@@ -33,11 +33,11 @@ THICKNESS_SAMPLES = 25
 """places along a section among which it is thickest: half and twice change nothing (design/matching_constants.md)"""
 REACH = 8.0
 """how far from the end of an edge points are compared, in its radii: a face as wide as the edge and as much of both
-sides, which are straight so far [-]"""
+sides, which are straight so far [-]."""
 INSIDE = 0.05
-"""distance from an edge, in u, at which the sides show the direction across it [-]"""
+"""distance from an edge, in u, at which the sides show the direction across it [-]."""
 SHARES = (0.9, 0.5, 0.1)
-"""widths from which a face and an arc are fitted, of the half height of their points"""
+"""widths from which a face and an arc are fitted, of the half height of their points."""
 PLACES = {2: (41, 1), 3: (21, 11)}
 """places along each side, closer at the edges, and along the span at which it is asked how well the shape is known, by
 dimension; they bound the time"""
@@ -67,7 +67,7 @@ def loose_ends(match: Match) -> dict[str, float]:
         # a curve with as many parameters as points meets any
         if wall is None or len(wall.places) <= len(free):
             loose[name] = chord
-        elif wall.spread > max(ROW_SPREAD * chord, ROW_SPREAD_OF_NOISE * match.noise_estimate.noise):
+        elif wall.spread > max(EXACT * chord, ROW_SPREAD_OF_NOISE * match.noise_estimate.noise):
             loose[name] = WIDTH_OVER_SPREAD * wall.spread * len(free) / len(wall.places)
     return loose
 

@@ -13,8 +13,6 @@ from bladewright.fitting.matching.residuals import CloudResiduals
 from bladewright.fitting.matching.search import Match
 from bladewright.nurbs.basis import Reals
 
-CONFIDENCE = 0.95
-"""confidence of the intervals"""
 IDENTIFIED_SPREAD = 0.3
 """standard deviation, of a parameter's own scale, below which the cloud determines it. Its 95 % interval is then about
 one scale wide."""
@@ -24,10 +22,9 @@ and twice change nothing (design/matching_constants.md)."""
 FIRST_NEIGHBOURS, BY_CHANCE = 4, 2.0
 """neighbours that are compared first, twice as many each time, and standard errors that a correlation has by chance: 95
 in 100 are lower (Bartlett 1946)"""
-NULL_DIRECTION_SHARE = 1e-8
-"""share of a parameter in a direction on which nothing depends, below which it is rounding."""
 LARGEST_CONDITION = 1e7
-"""condition of the derivatives by the scaled parameters from which one of them is not determined"""
+"""condition of the derivatives by the scaled parameters from which one of them is not determined: half and twice change
+nothing measured (design/matching_constants.md)"""
 AT_BOUND = 1e-3
 """distance from a bound, of a parameter's scale, within which it lies on the bound."""
 
@@ -66,9 +63,9 @@ def parameter_estimates(match: Match) -> ParameterEstimates:
     kept = turns[known]
     scaled = variance * kept.T @ middle @ kept
     deviations = np.sqrt(np.diag(scaled))
-    deviations[np.any(np.abs(turns[~known]) > NULL_DIRECTION_SHARE, axis=0)] = np.inf
+    deviations[np.any(np.abs(turns[~known]) > np.sqrt(np.finfo(float).eps), axis=0)] = np.inf
     covariance = scaled * np.outer(size, size)
-    factor = float(stdtrit(left, 0.5 + CONFIDENCE / 2.0))
+    factor = float(stdtrit(left, 0.975))
     values_now = problem.values_of(match.design)
     low, high = problem.scales.low, problem.scales.high
     estimates = []

@@ -10,7 +10,7 @@ from bladewright.blade.native.blade import Blade
 from bladewright.fitting.assessment.report import REGIONS
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS, WallPoints, blade_ends_of
 from bladewright.fitting.matching.footpoints import Footpoints, nearest_footpoints
-from bladewright.fitting.matching.noise import NoiseEstimate, noise_of
+from bladewright.fitting.matching.noise import EDGE_BAND, NoiseEstimate, noise_of
 from bladewright.fitting.models.blunt_edges import edges_of, on_sides, sides_of
 from bladewright.fitting.models.model import ModelShape
 from bladewright.numerics.robust import median_deviation
@@ -19,13 +19,12 @@ from bladewright.nurbs.closest import Descents
 from bladewright.nurbs.surface import Surface
 from bladewright.section.section import Section
 
-EDGE_REGION = 0.03
-"""extent of the edges' regions, in u; it only sorts points for the report."""
 LAST_STEP = 1e-10
 """last step of the descents, in the parameters of a patch: points on a blade of 36 mm chord are then 1e-11 m off, and
 2e-10 m with the 1e-8 of other searches"""
 OFF_SIDES = 3.0
-"""standard deviations of the distances from which a point is off the sides, and may be on another face"""
+"""standard deviations of the distances from which a point is off the sides, and may be on another face: the three sigma
+rule (Pukelsheim 1994)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -102,7 +101,7 @@ def measured(
     deviations = np.where(footpoints.heights < 0.0, -1.0, 1.0) * off
     places = np.array(["upper", "lower"], dtype="<U13")[footpoints.side]
     edge = np.where(
-        footpoints.u < EDGE_REGION, "leading edge", np.where(footpoints.u > 1.0 - EDGE_REGION, "trailing edge", "sides")
+        footpoints.u < EDGE_BAND, "leading edge", np.where(footpoints.u > 1.0 - EDGE_BAND, "trailing edge", "sides")
     )
     edges = edges_of(built)
     if "blunt" in edges:

@@ -20,7 +20,7 @@ there (`DEEP_SHARE`), and deeper than this share of the cloud's extent (`DEEP_EX
 (design/matching_constants.md)."""
 FACING = 0.999
 """cosine of the angle from which a normal faces a point: smooth sides do to rounding, and corners that turn by less
-than 3 deg leave a point a thousandth of its distance too near"""
+than 3 deg leave a point a thousandth of its distance too near."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
+from scipy.special import ndtri
 
 from bladewright.fitting.clouds.thinning import even_subset, random_subset
 from bladewright.fitting.matching.footpoints import Footpoints
@@ -25,7 +26,8 @@ OUTLYING_NOISE = 6.0
 """distance of an outlier, in standard deviations of the noise: two of a billion normal points are so far off
 (design/matching_constants.md)."""
 NEIGHBOUR_STEP = 5.0
-"""largest difference of neighbours on one surface, in standard deviations of the noise."""
+"""largest difference of neighbours on one surface, in standard deviations of the noise: half and twice change nothing
+measured (design/matching_constants.md)."""
 OUTLYING_MISFIT, OUTLYING_MISFIT_AT_EDGES = 6.0, 60.0
 """distance of an outlier, in usual misfits of the design, and near an edge (`OUTLYING_MISFIT_AT_EDGES`), where misfits
 are large and neighbours are few. Lower values take points of an edge that is not yet found for outliers
@@ -50,19 +52,21 @@ PAST_END_BY_CHANCE, LEVEL_SLOPE = 1, 0.05
 level (`LEVEL_SLOPE`): more show that the end is wrong. Without, an impeller with outliers is 3.3e-3 of the chord off,
 not 1.3e-4 (design/matching.md)."""
 LARGEST_OUTLIER_SHARE = 0.15
-"""share of outliers from which it is the design that lies off, and all points count as inliers."""
+"""share of outliers from which it is the design that lies off, and all points count as inliers: half and twice change
+nothing measured (design/matching_constants.md)."""
 LOCAL_POINTS, LOCAL_OVERLAP = 128, 16
 """points around a site whose noise and misfit are taken to be alike: a quartile of so many is known to 15 %, and few
 enough follow a scanner whose noise varies; and how many sites a point is around, about (`LOCAL_OVERLAP`)
 (design/matching_constants.md)."""
-DEVIATION_OVER_QUARTILE = 3.1384
-"""standard deviation of normal noise over the lower quartile of its magnitude, 1 / Phi^-1(5/8): the points of an end
-face beside a side, half of all there, spoil it less than the median."""
+DEVIATION_OVER_QUARTILE = 1.0 / float(ndtri(5.0 / 8.0))
+"""standard deviation of normal noise over the lower quartile of its magnitude: the points of an end face beside a side,
+half of all there, spoil it less than the median."""
 CORE_NEIGHBOURS = 3
 """points of the large groups beside a small one to which a step within the noise may lead."""
-ALWAYS_INLIER = 1e-4
-"""distance up to which no point is an outlier, of the cloud's extent: as near as exact points are to be met. The few of
-them at an edge lie further off than the noise that all others show."""
+EXACT = 1e-4
+"""distance to which exact points are to be met, of the extent of the cloud or of the chord. No point nearer than that
+is an outlier, as those at an edge lie further off than the noise that all others show; half and twice change nothing
+measured (design/matching_constants.md)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -112,7 +116,7 @@ def outliers_of(
     near, site = _surroundings(around)
     level = np.maximum(noise, DEVIATION_OVER_QUARTILE * np.quantile(deviations[near], 0.25, axis=1)[site]) / roots
     edge = (footpoints.u < EDGE_BAND) | (footpoints.u > 1.0 - EDGE_BAND)
-    exact = ALWAYS_INLIER * around.extent
+    exact = EXACT * around.extent
     # a misfit of the design is told from outliers by going on from point to point
     matched = misfit < MATCHED * noise
     local = np.full(len(heights), misfit)
@@ -167,7 +171,7 @@ def _cut_off(
     """Whether points (n,) are in a group of at most `largest` that no step within the noise leads to."""
 
     def steps(start: NDArray[np.intp], end: NDArray[np.intp]) -> NDArray[np.bool_]:
-        allowed = NEIGHBOUR_STEP * np.maximum(level[start], level[end]) + ALWAYS_INLIER * around.extent
+        allowed = NEIGHBOUR_STEP * np.maximum(level[start], level[end]) + EXACT * around.extent
         return (np.abs(heights[end] - heights[start]) <= allowed) & ~beyond[start] & ~beyond[end]
 
     index = around.index
@@ -264,7 +268,7 @@ def _noise_of_many(
         kept = part.part(found.inliers)
         beside = cKDTree(kept.points).query(footpoints.points)[1]
         level = np.hypot(found.noise, found.noise) if weights is None else found.noise * np.sqrt(1.0 + 1.0 / weights)
-        near = ALWAYS_INLIER * float(np.max(np.ptp(points, axis=0)))
+        near = EXACT * float(np.max(np.ptp(points, axis=0)))
         step = footpoints.distances - kept.distances[beside]
         inliers = step <= OUTLYING_NOISE * level + near
         inliers[rows] = found.inliers

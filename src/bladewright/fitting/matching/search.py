@@ -16,7 +16,7 @@ from bladewright.errors import BladewrightError, DesignError, FitError
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.matching.blade_ends import BladeEnds, blade_ends_of, edge_overhang_of
 from bladewright.fitting.matching.footpoints import nearest_footpoints
-from bladewright.fitting.matching.noise import ALWAYS_INLIER, NoiseEstimate, noise_of
+from bladewright.fitting.matching.noise import EXACT, NoiseEstimate, noise_of
 from bladewright.fitting.matching.residuals import CloudResiduals, MatchProblem, PlacedCloud, regularisation_of
 from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.models.model import Model, model_of
@@ -47,9 +47,7 @@ class BestSoFar:
         """
         for _, found in self.found:
             tolerance = getattr(found.design, "tolerance", None)
-            coarse = found.design.changed(
-                {} if tolerance is None else {"tolerance": max(tolerance, COARSEST_TOLERANCE)}
-            )
+            coarse = found.design.changed({} if tolerance is None else {"tolerance": max(tolerance, EXACT)})
             try:
                 return replace(found, design=coarse, interrupted=True), coarse.build()
             except BladewrightError:
@@ -63,7 +61,8 @@ EVALUATIONS_PER_ROUND = 10
 MOST_ROUNDS = 12
 """rounds of a search at most: it bounds the time of a search that does not settle (design/matching_constants.md)."""
 SETTLED_RATIO = 0.995
-"""ratio of a round's misfit to the one before from which a search has settled."""
+"""ratio of a round's misfit to the one before from which a search has settled: half and twice its distance to one
+change nothing measured (design/matching_constants.md)."""
 ROUGH_REDUCTION = 0.01
 """predicted relative reduction of the cost that a step needs while a search is only one on the way: exact minima of
 intermediate structures are not needed (design/matching_constants.md)."""
@@ -71,8 +70,8 @@ REGULARISATION_DECAY = 0.5
 """ratio of the noise that a fading regularisation is for to that of the round before, at most (iteratively regularised
 Gauss-Newton: Bakushinskii 1992). Held at the misfit, which it causes itself, it kept rich matches 7e-3 of chord off;
 where few control points cause the misfit, it leaves them wild, and predictions about them poor (design/matching.md)."""
-MENDING_ROUNDS = 3
-"""rounds of a search with points that a match left out: the rounds of a rich match"""
+QUICK_ROUNDS = 2
+"""rounds of a search on the way (design/matching_constants.md); of one on whose misfit a decision rests one more"""
 FAST_RATIO = 0.5
 """ratio of misfits below which the next round is predicted to reduce the misfit as much again
 (design/matching_constants.md)."""
@@ -80,9 +79,8 @@ EXACT_MISFIT = 3e-14
 """misfit below which nothing is left to find, of the chord: rounding of the surfaces themselves."""
 NATIVE_TOLERANCE_OF_NOISE = 0.1
 """tolerance of the native surfaces in a round, of the noise: a tenth adds less than 1 % to the distances. Knots coarser
-than the misfit needs had lost matches that were found."""
-COARSEST_TOLERANCE = 1e-4
-"""coarsest tolerance of the native surfaces in a search, of the chord."""
+than the misfit needs had lost matches that were found. Half and twice change nothing measured
+(design/matching_constants.md)."""
 EDGE_RADIUS_MARGIN = {2: 2e-6, 3: 2e-5}
 """margin by which the control point that sets an edge's radius is held below the thickness beside it, of the section's
 extent, by dimension: a blade is refused between its stations too."""
@@ -190,9 +188,11 @@ class Match:
 
 
 NOISE_CORRELATION = 0.15
-"""share of the misfit that neighbours have in common below which the misfit is noise."""
+"""share of the misfit that neighbours have in common below which the misfit is noise: half and twice change nothing
+measured (design/matching_constants.md)."""
 FAR_OFF = 3.0
-"""standard deviations of the noise, by the median, beyond which the root mean square of a misfit is none of it."""
+"""standard deviations of the noise, by the median, beyond which the root mean square of a misfit is none of it: half
+and twice change nothing measured (design/matching_constants.md)."""
 
 
 def has_systematic_misfit(match: Match) -> bool:
@@ -284,7 +284,7 @@ def without_false_outliers(task: Task, match: Match) -> Match:
         return match
     every = replace(task, allow_outliers=False)
     try:
-        found = searched(every, match.design, noise=match.rms, rounds=MENDING_ROUNDS, min_reduction=ROUGH_REDUCTION)
+        found = searched(every, match.design, noise=match.rms, rounds=QUICK_ROUNDS + 1, min_reduction=ROUGH_REDUCTION)
         found = evaluated(task, found.design, noise=found.rms)
     except FitError:
         return match
@@ -297,9 +297,7 @@ def _prepared_round(
 ) -> Match:
     """A design with the problem of the next round."""
     points, paths = task.points, task.free(start)
-    tolerance = float(
-        np.clip(NATIVE_TOLERANCE_OF_NOISE * (noise or 1.0), getattr(design, "tolerance", 1e-6), COARSEST_TOLERANCE)
-    )
+    tolerance = float(np.clip(NATIVE_TOLERANCE_OF_NOISE * (noise or 1.0), getattr(design, "tolerance", 1e-6), EXACT))
     try:
         model = model_of(design, tolerance)
         shape = model.shape(design)
@@ -314,7 +312,7 @@ def _prepared_round(
         float(np.sqrt(np.mean(footpoints.distances[noise_estimate.inliers & ~ends.on_end_face] ** 2))) / model.chord
     )
     # of a cloud without noise the true edge is to cost nothing
-    exact = not task.allow_outliers or noise_estimate.noise < ALWAYS_INLIER * float(np.max(np.ptp(points, axis=0)))
+    exact = not task.allow_outliers or noise_estimate.noise < EXACT * float(np.max(np.ptp(points, axis=0)))
     scales = scales_of(start, paths, model.chord, task.bounds)
     regularisation = regularisation_of(start, paths, scales.size, ends_shown=ends.in_rows(model.chord))
     cloud_residuals = CloudResiduals(

@@ -12,15 +12,13 @@ from scipy.special import chdtri
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import GROSS_DEVIATION
 from bladewright.fitting.matching.footpoints import Side
-from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
+from bladewright.fitting.matching.search import QUICK_ROUNDS, ROUGH_REDUCTION, Match, Task, searched
 from bladewright.fitting.model_selection.reshaping import with_feasible_edges
 from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS
 
 SHARP_RADIUS = 5e-6
 """radius of such an edge, of the axial chord: a wedge of 15 deg ends 3.3e-5 before its tip, by r / sin(7.5 deg) - r, a
 third of what exact points are met within."""
-ROUNDS = 3
-"""rounds of the searches that are compared; a last one follows."""
 SHARPER_BY_CHANCE = 0.05
 """probability that a round edge leaves so much less than a sharp one by chance, where it is sharp (Wilks 1938)."""
 SHARP_NOTE = (
@@ -43,12 +41,14 @@ def with_sharp_edges(task: Task, match: Match) -> tuple[Task, Match, str]:
             continue
         held = task.holding((radius,))
         try:
-            match = searched(task, match.design, noise=match.rms, rounds=ROUNDS, min_reduction=ROUGH_REDUCTION)
+            match = searched(
+                task, match.design, noise=match.rms, rounds=QUICK_ROUNDS + 1, min_reduction=ROUGH_REDUCTION
+            )
             found = searched(
                 held,
                 match.design.changed({radius: SHARP_RADIUS}),
                 noise=match.rms,
-                rounds=ROUNDS,
+                rounds=QUICK_ROUNDS + 1,
                 min_reduction=ROUGH_REDUCTION,
             )
             found.design.build()

@@ -26,8 +26,6 @@ RIDGE = {2: 0.0, 3: 0.01}
 """cost of a change of a parameter by its scale, of the sum of squares (Hoerl and Kennard 1970), by dimension:
 linearisations reach about so far. Without it predicted blades lie tens of scales away where points say little, and
 searches from them take half as long again (design/matching.md); those of sections take a tenth of a second."""
-ROUNDING = 1e-14
-"""share of the largest diagonal entry of the normal equations by which their diagonal is raised: their rounding."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -178,7 +176,8 @@ class LinearModel:
 
     def _normal_equations(self, subspace: Reals, shift: Reals) -> tuple[Reals, Reals]:
         gram = subspace.T @ self._gram @ subspace
-        gram[np.diag_indices_from(gram)] += ROUNDING * float(np.max(np.diag(gram)))
+        # by their rounding
+        gram[np.diag_indices_from(gram)] += len(gram) * np.finfo(float).eps * float(np.max(np.diag(gram)))
         return gram, subspace.T @ (self._right + self._gram @ shift)
 
     def subspace(self, counts: Sequence[Counts]) -> tuple[Reals, Reals]:

@@ -11,7 +11,7 @@ from bladewright.blade.design.flow_path import Channel
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Design, Law, Point, Points, Stations
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.matching.search import COARSEST_TOLERANCE
+from bladewright.fitting.matching.noise import EXACT
 from bladewright.fitting.model_selection.structure import (
     COMPARED_PLACES,
     MOST_SPAN,
@@ -174,7 +174,7 @@ def with_feasible_edges(design: Design) -> Design:
 def _has_shape(design: UnifiedSection | UnifiedBlade) -> bool:
     try:
         with np.errstate(all="ignore"):
-            return model_of(design, COARSEST_TOLERANCE).shape(design).finite
+            return model_of(design, EXACT).shape(design).finite
     except DesignError:
         return False
 
@@ -187,7 +187,8 @@ SHARES = (1.0, 0.8, 0.6, 0.4, 0.2, 0.0)
 """shares of the further control points of a rich structure that are tried where points are few
 (design/matching_constants.md)."""
 POINTS_PER_PARAMETER = 2
-"""points for each parameter of a rich structure at least: published profiles have few points."""
+"""points for each parameter of a rich structure at least: published profiles have few points. Half and twice change
+nothing measured (design/matching_constants.md)."""
 RICH_CHANNEL = (8, 8, 6, 6)
 """control points of the edges, of hub and of shroud."""
 

@@ -15,10 +15,12 @@ import numpy as np
 
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.assessment.acceptance import EXACT, NEAR_EVERYWHERE, MatchTarget
+from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, MatchTarget
 from bladewright.fitting.assessment.estimates import undetermined_parameters
 from bladewright.fitting.free_parameters import corner_radii
+from bladewright.fitting.matching.noise import EXACT
 from bladewright.fitting.matching.search import (
+    QUICK_ROUNDS,
     ROUGH_REDUCTION,
     Match,
     Task,
@@ -55,10 +57,9 @@ from bladewright.fitting.model_selection.structure import Structure, rows_shown,
 
 GUESS_NOISE = 3e-3
 """noise of the first round where the start is a guess, of the chord (design/matching_constants.md)."""
-QUICK_ROUNDS = 2
-"""rounds of a search on the way (design/matching_constants.md)"""
 FINAL_REDUCTION = 1e-3
-"""predicted relative reduction of the cost that a step of the last search needs."""
+"""predicted relative reduction of the cost that a step of the last search needs: half and twice change nothing measured
+(design/matching_constants.md)."""
 QUICK_POINTS, SEVERAL_POINTS, THOROUGH_POINTS = 1000, 4000, 12_000
 """points of the first search in space, of those that choose control points, which need every row of points, and of the
 last one: time is proportional to them."""
@@ -74,7 +75,8 @@ HELD_NOTE = "the points do not determine {}, which are held where a smooth desig
 """note where parameters are held"""
 DETERMINED_MARGIN, MOST_HOLDINGS = 1.5, 3
 """standard deviations that a determined direction of the parameters has in its own scale at least, more than one as the
-search that follows changes the residuals; and how often parameters are held at most (`MOST_HOLDINGS`)."""
+search that follows changes the residuals; and how often parameters are held at most (`MOST_HOLDINGS`). Half and twice
+change nothing measured (design/matching_constants.md)."""
 NOISE_REASON = "what is left is the cloud's own noise, {:.2g} mm: more control points would follow it"
 
 
@@ -180,7 +182,8 @@ TRIED_PARAMETERS, MOST_TRIED = 100, 4
 STAGES = 3
 """times that structures are predicted anew about the match that they have led to."""
 NEAR_RICH = 1.25
-"""largest distance that a match keeps whose misfit is no noise and of which nothing is asked, of that of a rich one."""
+"""largest distance that a match keeps whose misfit is no noise and of which nothing is asked, of that of a rich one:
+half and twice change nothing measured (design/matching_constants.md)."""
 NOISE_QUANTILE = 1.645
 """standard errors by which a misfit may pass the noise, which one of pure noise does once in twenty times
 (design/matching_constants.md)."""

@@ -20,12 +20,13 @@ from bladewright.section.unified_sides import sample_places
 CHANNEL_CURVES = ("leading_edge", "trailing_edge", "hub", "shroud")
 """the four curves of a channel"""
 FEWEST_THICKNESSES = 3
-"""control points of a thickness along the chord at least"""
+"""control points of a thickness along the chord at least: half and twice change nothing measured
+(design/matching_constants.md)"""
 SPARE_SAMPLES = 4
 """samples along the chord beyond a thickness's control points: fewer leave its law undetermined
 (design/matching_constants.md)."""
 MOST_SAMPLES = 60
-"""samples along the chord at most"""
+"""samples along the chord at most: half and twice change nothing measured (design/matching_constants.md)"""
 MOST_CHORDWISE, MOST_SPAN, MOST_CURVE = MOST_SAMPLES - SPARE_SAMPLES, 12, 12
 """control points along the chord, along the span and of a curve of the channel at most; they bound the time."""
 COMPARED_PLACES = np.linspace(0.0, 1.0, 101)
