@@ -51,7 +51,6 @@ ROWS = {
     "families/blades.py": ("example-compressor-stator",),
     "families/part_laws.py": ("example-compressor-stator", "Aachen2D-suction-pressure"),
     "families/sections.py": ("example-compressor-stator", "Aachen2D-suction-pressure"),
-    "finishing.py": ("LS89-free",),
     "fit.py": ("LS89-free",),
     "matching/blade_ends.py": ("Aachen-parameters", "radial-diffuser-free"),
     "": (*SECTIONS, *BLADES),

@@ -7,8 +7,8 @@ import pytest
 
 from bladewright.blade.design.cut import AtRadius, AtX, Cut
 from bladewright.blade.design.fillet import Fillet
-from bladewright.fitting.finishing import Finishing
 from bladewright.fitting.fit import fit
+from bladewright.fitting.placing import Finishing
 from machines import COARSE, built, example
 
 PLAIN = example("compressor-stator").changed({"tolerance": COARSE, "hub_clearance": None})

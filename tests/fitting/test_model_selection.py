@@ -9,9 +9,8 @@ import pytest
 from bladewright.fitting.assessment.acceptance import MatchTarget
 from bladewright.fitting.free_parameters import corner_radii, free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
-from bladewright.fitting.model_selection.elimination import LinearModel, best_of_size, eliminated
+from bladewright.fitting.model_selection.elimination import LinearModel, best_of_size, eliminated, reweighted
 from bladewright.fitting.model_selection.reshaping import reshaped, rich_structure, wider_structure
-from bladewright.fitting.model_selection.reweighting import reweighted
 from bladewright.fitting.model_selection.selection import selected_match
 from bladewright.fitting.model_selection.structure import resizable_laws, structure_of
 from machines import example

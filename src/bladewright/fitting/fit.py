@@ -26,12 +26,19 @@ from bladewright.fitting.families.blades import matched_blade
 from bladewright.fitting.families.kinds import FAMILIES, DesignHeader, FitFamily, family_of
 from bladewright.fitting.families.sections import matched_section
 from bladewright.fitting.families.unified import matched_unified
-from bladewright.fitting.finishing import Finishing, without_finishing
 from bladewright.fitting.free_parameters import FreeParameters, free_parameters_of
 from bladewright.fitting.initial_guess.blade import spans_along_y
 from bladewright.fitting.matching.noise import EXACT
 from bladewright.fitting.matching.search import Match, Task
-from bladewright.fitting.placing import Matched, PlacedTask, nearest_of, realigned, shown_of
+from bladewright.fitting.placing import (
+    Finishing,
+    Matched,
+    PlacedTask,
+    nearest_of,
+    realigned,
+    shown_of,
+    without_finishing,
+)
 from bladewright.fitting.registration import axis_motion, composed, found_axes, registration
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import choice

@@ -2,21 +2,22 @@
 
 About a match of a rich structure the residuals are a linear function of its control points. Every narrower structure
 is a linear subspace of these, so that the least squares of its match follow from the same derivatives by products.
-Reference: Draper and Smith 1998, section 15.3.
+Where a largest distance is asked for, points weigh by their distances, in predictions and in searches. References:
+Draper and Smith 1998, section 15.3; Lawson 1961 (weights).
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
+from bladewright.errors import DesignError, FitError
 from bladewright.fitting.matching.scales import scales_of
-from bladewright.fitting.matching.search import Match
+from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
 from bladewright.fitting.model_selection.reshaping import reshaped
-from bladewright.fitting.model_selection.reweighting import reweighted
 from bladewright.fitting.model_selection.structure import Counts, ResizableLaw, resizable_laws, structure_of
 from bladewright.nurbs.basis import Reals
 
@@ -127,7 +128,9 @@ class LinearModel:
     def prediction(self, counts: Sequence[Counts]) -> Prediction | None:
         """What the match with these numbers of control points leaves; None where it is not determined."""
         subspace, shift = self.subspace(counts)
-        gram, right = self._normal_equations(subspace, shift)
+        gram, right = subspace.T @ self._gram @ subspace, subspace.T @ (self._right + self._gram @ shift)
+        # raised by their rounding
+        gram[np.diag_indices_from(gram)] += len(gram) * np.finfo(float).eps * float(np.max(np.diag(gram)))
         try:
             inverse = np.asarray(cho_solve(cho_factor(gram), np.eye(len(gram))))
         except LinAlgError:
@@ -153,14 +156,12 @@ class LinearModel:
         """
         found, first = [], len(self._others)
         for i, (law, counts) in enumerate(zip(self.laws, prediction.counts, strict=True)):
-            part, nearest, free = self._law_subspace(i, counts)
+            part, nearest, free, shift = self._law_subspace(i, counts)
             own = slice(first, first + part.shape[1])
             first = own.stop
             structure = law.resized(self.structure, counts)
             values = nearest.copy()
-            values[free] += np.linalg.lstsq(
-                part, prediction.change[self._columns[i]] - self._shift(i, counts), rcond=None
-            )[0]
+            values[free] += np.linalg.lstsq(part, prediction.change[self._columns[i]] - shift, rcond=None)[0]
             for place, count in enumerate(counts):
                 for fewer in range(max(law.limits()[0][place], count - LARGEST_STEP), count):
                     smaller = (*counts[:place], fewer, *counts[place + 1 :])
@@ -174,28 +175,22 @@ class LinearModel:
                     found.append((loss / len(lost), len(lost), i, smaller))
         return sorted(found)
 
-    def _normal_equations(self, subspace: Reals, shift: Reals) -> tuple[Reals, Reals]:
-        gram = subspace.T @ self._gram @ subspace
-        # by their rounding
-        gram[np.diag_indices_from(gram)] += len(gram) * np.finfo(float).eps * float(np.max(np.diag(gram)))
-        return gram, subspace.T @ (self._right + self._gram @ shift)
-
     def subspace(self, counts: Sequence[Counts]) -> tuple[Reals, Reals]:
         """The rich structure's parameters (k, j) by those of a narrower one, and their change (k,) to the nearest."""
-        parts = [self._law_subspace(i, each)[0] for i, each in enumerate(counts)]
-        width = len(self._others) + sum(part.shape[1] for part in parts)
+        laws = [self._law_subspace(i, each) for i, each in enumerate(counts)]
+        width = len(self._others) + sum(part.shape[1] for part, *_ in laws)
         found, shift = np.zeros((self.slopes.shape[1], width)), np.zeros(self.slopes.shape[1])
         found[self._others, np.arange(len(self._others))] = 1.0
         first = len(self._others)
-        for i, (columns, part) in enumerate(zip(self._columns, parts, strict=True)):
+        for columns, (part, _, _, change) in zip(self._columns, laws, strict=True):
             last = first + part.shape[1]
             found[columns, first:last] = part
-            shift[columns] = self._shift(i, counts[i])
+            shift[columns] = change
             first = last
         return found, shift
 
-    def _law_subspace(self, law: int, counts: Counts) -> tuple[Reals, Reals, NDArray[np.bool_]]:
-        """A law's free parameters by those with other counts, the nearest of these, and which of them are free."""
+    def _law_subspace(self, law: int, counts: Counts) -> tuple[Reals, Reals, NDArray[np.bool_], Reals]:
+        """A law's free parameters by those with other counts, the nearest of these, which are free, and the change."""
         key = law, counts
         if key not in self._known:
             embedding, free = self.laws[law].embedding(self.structure, counts), self._free[law]
@@ -204,12 +199,7 @@ class LinearModel:
             kept[[int(np.argmax(row)) for row in embedding[~free]]] = False
             shift = (embedding @ nearest - self._values[law])[free]
             self._known[key] = embedding[np.ix_(free, kept)], nearest, kept, shift
-        return self._known[key][:3]
-
-    def _shift(self, law: int, counts: Counts) -> Reals:
-        """The change of a law's free parameters to the nearest ones of other counts."""
-        self._law_subspace(law, counts)
-        return self._known[law, counts][3]
+        return self._known[key]
 
     def structured(self, counts: Sequence[Counts]) -> Any:
         """The structure with these numbers of control points."""
@@ -232,6 +222,11 @@ SURPLUS_DIVISOR = 12
 """one in so many of the surplus parameters goes between two predictions (design/matching_constants.md)."""
 CHEAP_LOSS = 3.0
 """predicted loss for each parameter, of the least, up to which a law loses control points together with it
+(design/matching_constants.md)."""
+WEIGHTED_DEVIATION = 0.8
+"""deviation, of the tolerance, from which a point's weight rises (design/matching_constants.md)."""
+WEIGHT_CHANGE, WEIGHT_RANGE = (0.5, 2.0), (0.02, 50.0)
+"""range by which the weight of a point changes at a time, and in all (`WEIGHT_RANGE`)
 (design/matching_constants.md)."""
 REWEIGHTINGS = 12
 """times that weights change for a prediction at most (design/matching_constants.md)"""
@@ -266,6 +261,13 @@ def eliminated(model: LinearModel, least: int, tolerance: float | None = None) -
                 left -= fewer
         now = model.prediction(counts)
     return found
+
+
+def reweighted(weights: Reals, distances: Reals, tolerance: float) -> Reals:
+    """Weights (n,) of points that rise with their distances (Lawson 1961); points that do not take part have none."""
+    factors = np.clip(distances / (WEIGHTED_DEVIATION * tolerance), *WEIGHT_CHANGE)
+    found = np.where(weights > 0.0, np.clip(weights * factors, *WEIGHT_RANGE), 0.0)
+    return np.asarray(found * (np.sum(weights) / np.sum(found)))
 
 
 def reweighted_prediction(model: LinearModel, prediction: Prediction, tolerance: float) -> Prediction:
@@ -318,3 +320,49 @@ def _reduced(model: LinearModel, prediction: Prediction, most: int) -> list[Pred
         model.prediction([*prediction.counts[:law], smaller, *prediction.counts[law + 1 :]]) for law, smaller in counts
     ]
     return [each for each in found if each is not None]
+
+
+REWEIGHTED_SEARCHES = 6
+"""searches of one structure with other weights at most (design/matching_constants.md)"""
+TOUCHED = 0.05
+"""excess over the tolerance, of it, that the last of these is foreseen to have where they go on: each reduces it by the
+same ratio as the one before. Half and twice change nothing measured (design/matching_constants.md)."""
+
+
+def nearest_to_tolerance(task: Task, start: Match, weights: Reals, rich: Match, tolerance: float) -> Match:
+    """The match nearest to a tolerance [m] of searches of one structure, whose weights (n,) rise with the distances."""
+    best, design, noise, before = start, start.design, start.rms, np.inf
+    weights = np.where(weights > 0.0, weights, task.weights)
+    for left in reversed(range(REWEIGHTED_SEARCHES)):
+        if best is not start and largest_of(best, rich) <= tolerance:
+            break
+        weighted = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
+        try:
+            found = searched(weighted, design, noise=noise, rounds=1, min_reduction=ROUGH_REDUCTION)
+        except (FitError, DesignError):
+            break
+        excess = largest_of(found, rich) - tolerance
+        best = found if best is start or tolerance + excess < largest_of(best, rich) else best
+        if (excess / before) ** left * excess > TOUCHED * tolerance:
+            break
+        design, noise, before = found.design, found.rms, excess
+        weights = reweighted(weights, found.state.footpoints.distances, tolerance)
+    return best
+
+
+def largest_of(match: Match, rich: Match) -> float:
+    """The largest distance [m] of the points that took part in a rich match: ends that drew back leave none out."""
+    return float(np.max(match.state.footpoints.distances[rich.rows]))
+
+
+def confirmed_match(task: Task, match: Match, tolerance: float) -> Match:
+    """A match of some of the points that keeps a tolerance at more of them, by their weights."""
+    found = match
+    for _ in range(REWEIGHTED_SEARCHES):
+        found = searched(task, found.design, noise=match.rms, rounds=0)
+        if found.maximum <= tolerance:
+            break
+        weights = reweighted(task.weights, found.state.footpoints.distances, tolerance)
+        task = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
+        found = searched(task, found.design, noise=match.rms, rounds=1, min_reduction=ROUGH_REDUCTION)
+    return found

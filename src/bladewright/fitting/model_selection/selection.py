@@ -38,7 +38,11 @@ from bladewright.fitting.model_selection.elimination import (
     LinearModel,
     Prediction,
     best_of_size,
+    confirmed_match,
     eliminated,
+    largest_of,
+    nearest_to_tolerance,
+    reweighted,
     reweighted_prediction,
 )
 from bladewright.fitting.model_selection.reshaping import (
@@ -46,12 +50,6 @@ from bladewright.fitting.model_selection.reshaping import (
     rich_structure,
     wider_structure,
     with_feasible_edges,
-)
-from bladewright.fitting.model_selection.reweighting import (
-    confirmed_match,
-    largest_of,
-    nearest_to_tolerance,
-    reweighted,
 )
 from bladewright.fitting.model_selection.structure import Structure, rows_shown, structure_of
 
