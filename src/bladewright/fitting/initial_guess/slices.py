@@ -254,8 +254,7 @@ LIMITS = {
 }
 """limits of a first blade's laws, inside the family's own; angles in radians"""
 THINNEST = 1e-3
-"""smallest half thickness of a first blade, of the meridional length: half and twice change nothing measured
-(design/matching_constants.md)"""
+"""smallest half thickness of a first blade, of the meridional length (design/matching_constants.md)"""
 
 
 def unified_numbers(
