@@ -81,8 +81,7 @@ CURVATURE_MEANLINES = tuple(
 STRAIGHT = np.radians(0.5)
 """turning of a mean line [rad] below which the shape of its second derivative cannot be seen"""
 LEAST_CURVATURE = 0.1
-"""smallest control point of the second derivative to begin with, of the largest: of one sign, it always has a shape;
-half and twice change nothing measured (design/matching_constants.md)"""
+"""smallest control point of the second derivative to begin with, of the largest: of one sign, it always has a shape"""
 
 
 def curvature_meanline_parts(shape: SectionShape, like: CurvatureMeanline | None) -> Sequence[CurvatureMeanline]:

@@ -19,28 +19,24 @@ from bladewright.numerics.elementary import cumulative_length, unit
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 
 WALL_COUNTS = (3, 4, 5, 7, 9)
-"""points on each wall beside the blade; the fewest are taken that are near enough; half and twice change nothing
-measured (design/matching_constants.md)"""
+"""points on each wall beside the blade; the fewest are taken that are near enough."""
 WALL_DISTANCE = 0.01
 """distance of a wall from the one that was found that is near enough, of its length: walls found by points alone are no
-better known, and they are parameters; half and twice change nothing measured (design/matching_constants.md)"""
+better known, and they are parameters."""
 WALL_MARGIN = 0.1
-"""distance ahead of and behind the blade of the first and last of these points, of its length: half and twice change
-nothing measured (design/matching_constants.md)"""
+"""distance ahead of and behind the blade of the first and last of these points, of its length."""
 CONTINUATIONS = (0.8, 0.4, 0.2)
 """lengths of the straight continuations at whose ends points stand, of the wall's: the first are taken that do not
-fold; half and twice change nothing measured (design/matching_constants.md)"""
+fold"""
 LEAST_RADIUS = 0.6
-"""share of the radius at its end that the continuation may lose: it must not meet the axis; half and twice change
-nothing measured (design/matching_constants.md)"""
+"""share of the radius at its end that the continuation may lose: it must not meet the axis."""
 EDGE_POINTS = 4
-"""points on an edge curve: half and twice change nothing measured (design/matching_constants.md)"""
+"""points on an edge curve"""
 EDGE_OVERREACH = 0.06
-"""length by which an edge curve reaches past the walls, of its length: half and twice change nothing measured
-(design/matching_constants.md)"""
+"""length by which an edge curve reaches past the walls, of its length; `EDGE_OVERREACH_LIKE` is how many times that
+where points of another curve say how far it reaches."""
 EDGE_OVERREACH_LIKE = 4.0
-"""the same where the points of another curve say how far it reaches, in multiples: half and twice change nothing
-measured (design/matching_constants.md)"""
+"""the same where the points of another curve say how far it reaches, in multiples"""
 OPPOSITE_CURVE = {"leading_edge": "trailing_edge", "trailing_edge": "leading_edge", "hub": "shroud", "shroud": "hub"}
 """the curve in whose place each stands when the flow comes from the other side"""
 CURVE_PLACES: Reals = np.linspace(0.0, 1.0, 201)

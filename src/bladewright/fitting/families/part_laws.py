@@ -39,14 +39,11 @@ from bladewright.section.suction_pressure.part import SuctionPressure
 RICH_CHORDWISE = {2: 12, 3: 8}
 """control points of a law along the chord in a rich structure, by dimension."""
 RICH_SPAN = 5
-"""control points of a law along the span in a rich structure: half and twice change nothing measured
-(design/matching_constants.md)"""
+"""control points of a law along the span in a rich structure."""
 RICH_CURVE = 8
-"""points on an edge curve or a wall of a rich structure: as many as on a channel's edges; half and twice
-change nothing measured (design/matching_constants.md)"""
+"""points on an edge curve or a wall of a rich structure: as many as on a channel's edges"""
 FEWEST_ON_WALL = 5
-"""points of a wall at least: its ends, and three beside the blade; half and twice change nothing measured
-(design/matching_constants.md)"""
+"""points of a wall at least: its ends, and three beside the blade"""
 MOST_CHORDWISE = 24
 """control points of a law along the chord at most; it bounds the time: half and twice change nothing
 (design/matching_constants.md)."""

@@ -39,9 +39,9 @@ OUTLINE_COUNTS = (24, 32, 44)
 """numbers of points of contours that are tried in turn: searches of more end further off (design/matching.md)"""
 OUTLINE_DEVIATION = 1e-4
 """largest distance with which a contour gets no further points where nothing is asked for, of the chord: a fifth of
-what acceptance trusts; half and twice change nothing measured (design/matching_constants.md)"""
+what acceptance trusts"""
 OUTLINE_POINTS = 1000
-"""points by which contours are searched: half and twice change nothing measured (design/matching_constants.md)"""
+"""points by which contours are searched"""
 BESIDE, BY_CHANCE = 16, 1e-3
 """points beside each other by which a misfit is told that stays with an edge, which seldom has more, and probability
 that noise alone looks like one (`BY_CHANCE`), by the chi-squared test (Pearson 1900) [-]"""

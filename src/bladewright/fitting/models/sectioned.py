@@ -34,11 +34,11 @@ SINGLE_SECTION = Span(np.zeros(1))
 FEASIBILITY_SPAN = Span(np.linspace(0.0, 1.0, 5))
 """places along the span at which sections must stay feasible; each costs one more section a step"""
 SLOWEST_PACE = 0.003
-"""smallest speed of a side's own parameter by s beside an edge, of its mean speed; at 0 the family refuses the side;
-half and twice change nothing measured (design/matching_constants.md)"""
+"""smallest speed of a side's own parameter by s beside an edge, of its mean speed; at 0 the family refuses the side
+(design/matching_constants.md)"""
 OPENING_MARGIN = 0.003
-"""smallest distance of an edge's opening from the largest one that the family allows: half and twice change nothing
-measured (design/matching_constants.md)"""
+"""smallest distance of an edge's opening from the largest one that the family allows
+(design/matching_constants.md)"""
 
 
 @final
