@@ -33,11 +33,13 @@ THICKNESS_SAMPLES = 25
 """places along a section among which it is thickest: half and twice change nothing (design/matching_constants.md)"""
 REACH = 8.0
 """how far from the end of an edge points are compared, in its radii: a face as wide as the edge and as much of both
-sides, which are straight so far [-]."""
+sides, which are straight so far [-]; half and twice change nothing measured (design/matching_constants.md)."""
 INSIDE = 0.05
-"""distance from an edge, in u, at which the sides show the direction across it [-]."""
+"""distance from an edge, in u, at which the sides show the direction across it [-]; half and twice change nothing
+measured (design/matching_constants.md)."""
 SHARES = (0.9, 0.5, 0.1)
-"""widths from which a face and an arc are fitted, of the half height of their points."""
+"""widths from which a face and an arc are fitted, of the half height of their points: half and twice change nothing
+measured (design/matching_constants.md)."""
 PLACES = {2: (41, 1), 3: (21, 11)}
 """places along each side, closer at the edges, and along the span at which it is asked how well the shape is known, by
 dimension; they bound the time"""

@@ -15,7 +15,7 @@ from bladewright.nurbs.basis import Reals
 
 IDENTIFIED_SPREAD = 0.3
 """standard deviation, of a parameter's own scale, below which the cloud determines it. Its 95 % interval is then about
-one scale wide."""
+one scale wide (design/matching_constants.md)."""
 CORRELATED_POINTS, CORRELATED_NEIGHBOURS = 2000, 512
 """points whose residuals are compared with those of their neighbours, and neighbours at most; they bound the time: half
 and twice change nothing (design/matching_constants.md)."""

@@ -17,10 +17,12 @@ from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.surface import Surface
 
 ROW_BAND = 0.015
-"""distance from an end, in v, within which a point may belong to the row that shows it."""
+"""distance from an end, in v, within which a point may belong to the row that shows it: half and twice change nothing
+measured (design/matching_constants.md)."""
 FACE_BAND, FACE_DEPTH, FACE_NEARER_WALL = 0.1, 5.0, 0.3
 """a point of an end face has its footpoint within this distance of the end, in v, lies `FACE_DEPTH` usual distances
-inside the sides, and is nearer to the wall than to the sides by the ratio `FACE_NEARER_WALL`."""
+inside the sides, and is nearer to the wall than to the sides by the ratio `FACE_NEARER_WALL`
+(design/matching_constants.md)."""
 FACE_OUTLIERS, FACE_OUTLIERS_NEARER_WALL = 20, 0.1
 """outliers on an end face belong to it where there are so many, and half of them are nearer to the wall than to the
 sides by the ratio `FACE_OUTLIERS_NEARER_WALL`."""
@@ -43,7 +45,8 @@ OUTER_QUANTILE = 0.2
 """share of the places at an end that lie outside the law that is first sought: a row is the outermost, and beside it
 lie points of the sides."""
 ROW_SPREAD = 1e-3
-"""spread of the points at an end below which they stand in a row on the wall, of the chord."""
+"""spread of the points at an end below which they stand in a row on the wall, of the chord
+(design/matching_constants.md)."""
 END_PARAMETERS = {"hub": 0.0, "shroud": 1.0}
 """v of the two ends, by the name of their wall."""
 

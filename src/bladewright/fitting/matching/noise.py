@@ -43,7 +43,8 @@ CHANCE_EXCESS = 3.0
 """excess of the usual distance over the noise by chance, in multiples of the noise over the root of the number of
 points (design/matching_constants.md)."""
 LARGEST_GROUP, SMALL_GROUP = 0.05, 20
-"""largest group of outliers, as a share of the points, but `SMALL_GROUP` points are always allowed."""
+"""largest group of outliers, as a share of the points, but `SMALL_GROUP` points are always allowed: half and twice
+change nothing measured (design/matching_constants.md)."""
 END_BAND, WRONG_END_SHARE = 0.02, 0.2
 """distance from an end of the blade, in v, within which points show it; where more than `WRONG_END_SHARE` of them
 lie past the end, the end is wrong and not the points."""
@@ -62,7 +63,8 @@ DEVIATION_OVER_QUARTILE = 1.0 / float(ndtri(5.0 / 8.0))
 """standard deviation of normal noise over the lower quartile of its magnitude: the points of an end face beside a side,
 half of all there, spoil it less than the median."""
 CORE_NEIGHBOURS = 3
-"""points of the large groups beside a small one to which a step within the noise may lead."""
+"""points of the large groups beside a small one to which a step within the noise may lead: half and twice change
+nothing measured (design/matching_constants.md)."""
 EXACT = 1e-4
 """distance to which exact points are to be met, of the extent of the cloud or of the chord. No point nearer than that
 is an outlier, as those at an edge lie further off than the noise that all others show; half and twice change nothing

@@ -30,10 +30,12 @@ SPREAD_ABOUT_START = 3.0
 """spread of a parameter about its start, in its own scale. It only holds what nothing else does
 (design/matching_constants.md)."""
 CHANNEL_SPREAD = 1.0
-"""the same of control points of the meridional curves, which the cloud lets slide along their curves."""
+"""the same of control points of the meridional curves, which the cloud lets slide along their curves
+(design/matching_constants.md)."""
 CORNER_SPREAD = 0.25
 """the same of the channel's corners: where no row of points shows an end of the blade, the outline does, within half a
-percent of the chord. With 0.5 a corner of the radial turbine ends 9 % of the chord outside its points."""
+percent of the chord. With 0.5 a corner of the radial turbine ends 9 % of the chord outside its points; the radial
+diffuser depends on it as well (design/matching_constants.md)."""
 MERIDIANS = ("channel.", "flow_path.", "leading_edge.", "trailing_edge.")
 """beginnings of the paths of those, and of the edge curves and walls of blades from sections."""
 BEND_SPREAD = 0.5

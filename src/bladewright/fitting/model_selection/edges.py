@@ -18,7 +18,7 @@ from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS
 
 SHARP_RADIUS = 5e-6
 """radius of such an edge, of the axial chord: a wedge of 15 deg ends 3.3e-5 before its tip, by r / sin(7.5 deg) - r, a
-third of what exact points are met within."""
+third of what exact points are met within. Half and twice change nothing measured (design/matching_constants.md)."""
 SHARPER_BY_CHANCE = 0.05
 """probability that a round edge leaves so much less than a sharp one by chance, where it is sharp (Wilks 1938)."""
 SHARP_NOTE = (

@@ -281,7 +281,7 @@ def reweighted_prediction(model: LinearModel, prediction: Prediction, tolerance:
 
 
 EXCHANGES_TRIED = 4
-"""wider structures from which an exchange is sought, and narrower ones of each."""
+"""wider structures from which an exchange is sought, and narrower ones of each (design/matching_constants.md)."""
 
 
 def best_of_size(model: LinearModel, most: int) -> list[Prediction]:

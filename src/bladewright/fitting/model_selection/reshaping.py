@@ -190,7 +190,7 @@ POINTS_PER_PARAMETER = 2
 """points for each parameter of a rich structure at least: published profiles have few points. Half and twice change
 nothing measured (design/matching_constants.md)."""
 RICH_CHANNEL = (8, 8, 6, 6)
-"""control points of the edges, of hub and of shroud."""
+"""control points of the edges, of hub and of shroud (design/matching_constants.md)."""
 
 
 def rich_structure(

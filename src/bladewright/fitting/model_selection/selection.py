@@ -176,9 +176,11 @@ def _of_structure(several: Task, many: Task, found: Match, structure: Structure,
 
 TRIED_PARAMETERS, MOST_TRIED = 100, 4
 """parameters of the structures of one size that are searched, in all, as predictions are linear; and structures at most
-(`MOST_TRIED`), so that one can be built. With one of 22 the ORC nozzle is met by 1.68e-3 of the chord, not 1.50e-3."""
+(`MOST_TRIED`), so that one can be built. With one of 22 the ORC nozzle is met by 1.68e-3 of the chord, not 1.50e-3;
+with half of either LS89 is met by 1.0e-3, not 8.1e-4 (design/matching_constants.md)."""
 STAGES = 3
-"""times that structures are predicted anew about the match that they have led to."""
+"""times that structures are predicted anew about the match that they have led to: half and twice change nothing
+measured (design/matching_constants.md)."""
 NEAR_RICH = 1.25
 """largest distance that a match keeps whose misfit is no noise and of which nothing is asked, of that of a rich one:
 half and twice change nothing measured (design/matching_constants.md)."""
