@@ -15,6 +15,7 @@ from bladewright.fitting.families.section_shape import section_shape
 from bladewright.fitting.families.sections import _through_points, criterion, designs_of
 from bladewright.fitting.free_parameters import EDGES, FreeParameters
 from bladewright.fitting.matching.search import Task, searched
+from bladewright.fitting.model_selection import reshaping
 from bladewright.fitting.model_selection.elimination import LinearModel
 from bladewright.fitting.model_selection.reshaping import reshaped, rich_structure, richest
 from bladewright.fitting.model_selection.structure import resizable_laws, structure_of
@@ -50,6 +51,20 @@ def test_a_blade_with_more_control_points_along_the_span_is_the_same_blade(desig
         for edge in EDGES:
             line, own = (getattr(each, edge).line(1.0).values(np.linspace(0.0, 1.0, 801)) for each in (wider, design))
             assert np.max(cKDTree(line).query(own)[0]) < 5e-3 * np.max(np.ptp(own, axis=0)), law.name
+
+
+def test_where_a_wider_structure_has_no_shape_those_laws_get_wider_that_leave_one(monkeypatch):
+    own = structure_of(COMPRESSOR)
+    wide = richest(COMPRESSOR)
+    # a law of the metal angle with more control points takes the shape away
+    monkeypatch.setattr(
+        reshaping, "_has_shape", lambda design: structure_of(design).counts["section.metal_angle_in"] == most
+    )
+    most = wide.counts["section.metal_angle_in"]
+    assert structure_of(reshaping.widened_where_feasible(COMPRESSOR, wide)) == wide
+    most = own.counts["section.metal_angle_in"]
+    found = structure_of(reshaping.widened_where_feasible(COMPRESSOR, wide)).counts
+    assert found == {**wide.counts, "section.metal_angle_in": most}
 
 
 def test_walls_get_points_where_they_are_free_alone():

@@ -171,7 +171,22 @@ def with_feasible_edges(design: Design) -> Design:
     return design
 
 
-def _has_shape(design: UnifiedSection | UnifiedBlade) -> bool:
+def widened_where_feasible(design: Design, structure: Any) -> Design:
+    """The design of a wider structure, or where that has no shape, with those laws wider that leave it one.
+
+    The nearest laws of other control points may fold stream surfaces, or part an edge from a wall; each is tried alone.
+    """
+    whole = with_feasible_edges(reshaped(design, structure))
+    if _has_shape(whole):
+        return whole
+    own = structure_of(design)
+    for law in resizable_laws(design):
+        wider = law.resized(own, law.counts(structure)).with_samples(structure.samples)
+        own = wider if _has_shape(reshaped(design, wider)) else own
+    return reshaped(design, own)
+
+
+def _has_shape(design: Design) -> bool:
     try:
         with np.errstate(all="ignore"):
             return model_of(design, EXACT).shape(design).finite

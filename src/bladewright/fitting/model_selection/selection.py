@@ -48,8 +48,8 @@ from bladewright.fitting.model_selection.elimination import (
 from bladewright.fitting.model_selection.reshaping import (
     reshaped,
     rich_structure,
+    widened_where_feasible,
     wider_structure,
-    with_feasible_edges,
 )
 from bladewright.fitting.model_selection.structure import Structure, rows_shown, structure_of
 
@@ -231,7 +231,7 @@ class _Selection:
                 about = self._without_surplus(found) if slim and found is not match else found.design
                 first = partial(rich_structure, sampled=sampled)
                 widened = first if found is match else partial(wider_structure, slim=slim)
-                design = with_feasible_edges(reshaped(about, widened(about, self.task.free(about), *shown)))
+                design = widened_where_feasible(about, widened(about, self.task.free(about), *shown))
                 richer = searched(
                     self.task, design, noise=found.rms, rounds=rounds, min_reduction=ROUGH_REDUCTION, fading=True
                 )
