@@ -9,6 +9,7 @@ import pytest
 
 from bladewright.errors import FitError
 from bladewright.fitting.families import blades
+from bladewright.fitting.families.first_parts import suction_pressure_parts
 from bladewright.fitting.families.flow_path import ChannelCurves
 from bladewright.fitting.families.kinds import FAMILIES
 from bladewright.fitting.families.laws import counts_of, part_along_span, with_mean_laws
@@ -16,6 +17,7 @@ from bladewright.fitting.families.section_shape import section_shape, unrolled
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import FreeParameters, gauge_parameters, sliding_coordinate
 from bladewright.fitting.matching.scales import scales_of
+from bladewright.fitting.matching.search import Task
 from bladewright.fitting.models.blunt_edges import sides_of
 from bladewright.fitting.models.model import model_of
 from bladewright.section.laws import Span
@@ -125,3 +127,34 @@ def test_a_wedge_opens_downstream_whichever_way_its_flow_leads():
     edges = SimpleNamespace(values=lambda name, _: np.array([[0.0, 2.0 if name == "leading_edge" else 1.0]]))
     flow = [blades._backwards(edges, FAMILIES["wedge-diffuser"], None, each) for each in (shape, shape.reversed())]
     assert flow == [False, True]
+
+
+def test_a_turned_section_is_one_whose_points_all_stand_further_around_the_axis():
+    section = SimpleNamespace(scale=lambda x: 0.3 * np.exp(0.6 * x))
+    points = np.array([[0.0, 0.1], [0.4, -0.3]])
+    assert unrolled(section, points, 0.7) == pytest.approx(unrolled(section, points + np.array([0.0, 0.7])), abs=1e-15)
+
+
+def test_where_radii_differ_the_machine_may_be_turned_until_the_leading_edge_stands_at_zero():
+    wedge = WedgeDiffuser(stagger_angle=30.0, leading_edge_radius=0.01, trailing_edge_radius=0.02, wedge_angle=9.0)
+    shape = section_shape(WedgeDiffuserSection(name="vane", length_unit="mm", chord=50.0, section=wedge).build())
+    shape = replace(shape, start=np.array([0.0, 0.4]))
+    task = Task(points=cloud(), weights=np.ones(240), free=FreeParameters(), bounds={})
+
+    def planes(last, arrangement="annular"):
+        blade = SimpleNamespace(design=SimpleNamespace(arrangement=arrangement))
+        radii = {"leading_edge": 1.0, "trailing_edge": last}
+        edges = SimpleNamespace(values=lambda name, _: np.array([[0.0, radii[name]]]), blade=blade, backwards=False)
+        return blades._planes(task, edges, None, shape)
+
+    assert planes(1.5) == [("m'-theta", 0.0), ("m-r*theta", 0.0), ("m-r*theta", -0.4)]
+    assert planes(1.01) == planes(1.5, "linear") == [("m'-theta", 0.0)]
+
+
+def test_kinds_of_parts_are_told_apart_by_what_no_number_of_them_is():
+    part = DESIGNS["compressor-rotor"].section
+    angle = part.changed("metal_angle_in", 12.0)
+    assert blades._kind_of(part) == blades._kind_of(angle)
+    first, second = (suction_pressure_parts(section_shape(VANE.build().section(0.5)), None)[i] for i in (0, -1))
+    assert {first.edges, second.edges} == {"C1", "C2"}
+    assert blades._kind_of(first) != blades._kind_of(second)

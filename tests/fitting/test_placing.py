@@ -1,6 +1,7 @@
 """Matches of moved clouds take away the motion that a start off the shape has left."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.residuals import PlacedCloud
-from bladewright.fitting.matching.search import Task, evaluated
+from bladewright.fitting.matching.search import Task, about_x, evaluated
 from bladewright.fitting.registration import motion_by, motion_rates
 from machines import COARSE, built, example
 
@@ -91,3 +92,17 @@ def test_residuals_change_with_the_motion_as_differences_say():
         difference = (residuals(step) - residuals(-step))[: len(slopes)] / (2.0 * size)
         assert slopes[compared, k] == pytest.approx(difference[compared], abs=3e-3 * np.max(np.abs(slopes[:, k])))
     assert np.count_nonzero(compared) > 200
+
+
+def test_a_match_of_points_turned_about_the_axis_says_by_how_much():
+    given = np.random.default_rng(1).normal(size=(5, 3))
+    motion = Motion(rotation=about_x(0.2), translation=np.array([0.1, 0.0, 0.3]))
+    task = Task(points=motion(given), weights=np.ones(5), free=FreeParameters(), bounds={})
+    here = placing.PlacedTask(motion=motion, notes=(), start=None, every=task, shown=task, hidden=None)
+    assert placing.turned_with(here, SimpleNamespace(turn=0.0)) is here
+    there = placing.turned_with(here, SimpleNamespace(turn=0.5))
+    assert there.motion(given) == pytest.approx(there.every.points, abs=1e-15)
+    assert there.every.turn == 0.5
+    assert "by 28.6479 deg" in there.notes[0]
+    theta, before = (np.arctan2(points[:, 1], points[:, 2]) for points in (there.every.points, task.points))
+    assert np.mod(theta - before, 2.0 * np.pi) == pytest.approx(0.5, abs=1e-12)

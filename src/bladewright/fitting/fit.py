@@ -37,6 +37,7 @@ from bladewright.fitting.placing import (
     nearest_of,
     realigned,
     shown_of,
+    turned_with,
     without_finishing,
 )
 from bladewright.fitting.registration import axis_motion, composed, found_axes, registration
@@ -184,6 +185,7 @@ def fit(
             notes = (*notes, f"measured by {MOST_POINTS} of {len(points)} points, drawn at random")
     except DesignError as error:
         raise FitError(f"no design of the family was found near the points ({error}): {WHOLE_BLADE_HINT}") from error
+    here = turned_with(here, found)
     if not given and header.arrangement is None and getattr(found.design, "arrangement", "") == "linear":
         notes = (*notes, CASCADE_NOTE)
     notes = (*notes, *here.notes, *([reason] if reason else []))

@@ -25,7 +25,7 @@ from bladewright.fitting.assessment.result import Motion
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.clouds.walls import Walls
 from bladewright.fitting.free_parameters import EDGES, WALLS, FreeParameters
-from bladewright.fitting.matching.search import Match, Task, has_systematic_misfit
+from bladewright.fitting.matching.search import Match, Task, about_x, has_systematic_misfit
 from bladewright.fitting.registration import (
     OTHER_BLADE_NOTE,
     WEAKEST_FREEDOM,
@@ -142,6 +142,26 @@ class PlacedTask:
     """with those that may lie on the sides"""
     hidden: NDArray[np.str_] | None
     """(n,) what the others may lie on, empty for those on the sides"""
+
+
+TURNED_NOTE = (
+    "sections in the plane m-r*theta depend on where theta is counted from, and the points are turned about x by "
+    "{:.6g} deg: the leading edge is near theta = 0 where they are those of the family"
+)
+"""note where a match turns the points"""
+
+
+def turned_with(here: PlacedTask, match: Match) -> PlacedTask:
+    """What was sought, with the points turned about x as a match of them is."""
+    if not match.turn:
+        return here
+    step = Motion(rotation=about_x(match.turn), translation=np.zeros(3))
+    return replace(
+        here,
+        motion=step if here.motion is None else composed(step, here.motion),
+        notes=(*here.notes, TURNED_NOTE.format(np.degrees(match.turn))),
+        every=here.every.turned(match.turn),
+    )
 
 
 Matched = tuple[Match, Any, str]

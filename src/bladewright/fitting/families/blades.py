@@ -1,20 +1,22 @@
 """From points in space to a blade from sections of a family."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.blade.native.blade import Blade
-from bladewright.designs import Design
+from bladewright.designs import Design, Part
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import MatchTarget
 from bladewright.fitting.families.flow_path import ChannelCurves
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
 from bladewright.fitting.families.laws import counts_of, nearest_law, part_along_span, with_mean_laws, with_stations_of
 from bladewright.fitting.families.section_shape import SectionShape, section_shape, unrolled
-from bladewright.fitting.families.sections import compared
+from bladewright.fitting.families.sections import CONSIDERED, PROMISING, compared
 from bladewright.fitting.free_parameters import EDGES, FreeParameters, gauge_parameters
 from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.matching.footpoints import nearest_footpoints
@@ -43,6 +45,8 @@ FEASIBILITY_SPANS = Span(np.linspace(0.0, 1.0, 13))
 """places along the span at which laws must leave sections a shape"""
 LAW_COUNT = 3
 """control points of each law along the span where no structure is given"""
+BLADES_TRIED = 2
+"""planes in which whole blades are tried: a second one takes 4 to 8 s (design/matching.md)"""
 CONFORMAL, UNROLLED = "m'-theta", "m-r*theta"
 """planes of stream surfaces in which sections are tried"""
 SAME_RADIUS = 1.02
@@ -64,15 +68,14 @@ def matched_blade(
     own = start is None and like is None
     if own and isinstance(task.free, FreeParameters):
         task = replace(task, free=replace(task.free, walls=True))
-    designs = [start]
+    first: Any = start
     if start is None or like is not None:
         closed = _closed_blade(task, header, like) if start is None else start.build()
         task.progress("first design of the family")
-        designs = _first(task, closed, kind, like, header)
-    designs = [task.free.applied(each) if isinstance(task.free, FreeParameters) else each for each in designs]
-    for design in designs:
-        check_bounds(design, task.free(design), task.bounds)
-    first: Any = compared(task.thinned(QUICK_POINTS), iter(designs))[0].design if len(designs) > 1 else designs[0]
+        turn, first = _first(task, closed, kind, like, header)
+        task = task.turned(turn)
+    first = task.free.applied(first) if isinstance(task.free, FreeParameters) else first
+    check_bounds(first, task.free(first), task.bounds)
     structure = None if like is None else structure_of(like)
     found, reason = selected_match(task, first, target, like=structure, guessed=first is not start)
     return found, "; ".join(filter(None, (reason, "" if own else WALLS_HELD_NOTE)))
@@ -110,69 +113,101 @@ def _band(task: Task, closed: Blade, v: float) -> Reals:
     return np.concatenate(found)
 
 
-def _first(task: Task, closed: Blade, kind: FitFamily, like: Any, header: DesignHeader) -> list[Design]:
-    """Blades of the family whose sections are those of a closed blade, or without `like` that in its middle, too.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Frame:
+    """The sections of a closed blade in a plane, of the machine turned about x."""
 
-    They are laid out in the plane in which those sections are nearest to the family's.
+    plane: Any
+    turn: float
+    """[rad]"""
+    shapes: list[SectionShape]
+    """at START_SPANS"""
+
+
+def _first(task: Task, closed: Blade, kind: FitFamily, like: Any, header: DesignHeader) -> tuple[float, Design]:
+    """The blade of the family nearest to the points whose sections are those of a closed blade; the turn of its frame.
+
+    Planes that the sections in the middle hardly tell apart are told apart by a short search of whole blades.
     """
-    design = closed.design
-    metre = UNITS[header.length_unit]
     found = ChannelCurves(blade=closed)
     built = [closed.section(float(v)) for v in START_SPANS]
     middle = section_shape(built[MIDDLE])
     found = replace(found, backwards=_backwards(found, kind, like, middle))
     band = _band(task, closed, float(START_SPANS[MIDDLE]))
-    radius = found.values("leading_edge", START_SPANS)[:, 1]
-    tried, refusal = [], None
-    parts: list[Any] = [None if like is None else with_mean_laws(like.section)]
-    for plane in _planes(found, like):
-        flat = plane == UNROLLED
-        shapes = [section_shape(each, unroll=flat) for each in built]
-        beside = unrolled(built[MIDDLE], band) if flat else band
+    part = None if like is None else with_mean_laws(like.section)
+    tried, refusal = list[tuple[float, _Frame, Match]](), None
+    for plane, turn in _planes(task, found, like, middle):
+        shapes = [section_shape(each, unroll=plane == UNROLLED, turn=turn) for each in built]
+        beside = unrolled(built[MIDDLE], band, turn) if plane == UNROLLED else band
         if found.backwards:
             shapes, beside = [each.reversed() for each in shapes[::-1]], beside * [-1.0, 1.0]
+        frame = _Frame(plane=plane, turn=turn, shapes=shapes)
         try:
-            # the kind of part is chosen in the first plane
-            chosen = _matched(kind, shapes[MIDDLE], beside, kind.first_parts(shapes[MIDDLE], parts[0]))
-            matches = [
-                *_along_span(kind, shapes[MIDDLE::-1], chosen)[::-1],
-                *_along_span(kind, shapes[MIDDLE:], chosen)[1:],
-            ]
+            matches = _matched(kind, shapes[MIDDLE], beside, kind.first_parts(shapes[MIDDLE], part))
         except FitError as error:
             refusal = error
             continue
-        parts = [_part_of(each) for each in matches]
-        tried.append((float(np.median([each.rms for each in matches])), plane, shapes, parts))
-        parts = [_part_of(chosen)]
+        tried.append((matches[0].rms, frame, matches[0]))
     if not tried:
         raise FitError(str(refusal)) from refusal
-    _, plane, shapes, parts = min(tried, key=lambda each: each[0])
-    chosen = parts[MIDDLE]
-    counts = dict.fromkeys(counts_of(chosen), LAW_COUNT) if like is None else counts_of(like.section)
-    sections = [_laws(parts, counts)]
+    tried = sorted(tried, key=lambda each: each[0])[:BLADES_TRIED]
+    few, blades = task.thinned(QUICK_POINTS), list[tuple[Match, _Frame, list[Any]]]()
+    for rms, frame, chosen in tried:
+        if rms > PROMISING * tried[0][0]:
+            break
+        halves = (_along_span(kind, way, chosen) for way in (frame.shapes[MIDDLE::-1], frame.shapes[MIDDLE:]))
+        first, last = ([_part_of(each) for each in half] for half in halves)
+        parts = [*first[:0:-1], *last]
+        counts = dict.fromkeys(counts_of(last[0]), LAW_COUNT) if like is None else counts_of(like.section)
+        design = _blade_of(found, frame, kind.blade, _laws(parts, counts), like, header)
+        try:
+            blades.append((compared(few.turned(frame.turn), iter([design]))[0], frame, parts))
+        except FitError as error:
+            refusal = error
+    if not blades:
+        raise FitError(str(refusal)) from refusal
+    best, frame, parts = min(blades, key=lambda each: each[0].rms)
     if like is None:
         # numbers of a section that make up for each other run wild along the span where nothing holds them
-        sections.append(_laws([chosen] * len(parts), dict.fromkeys(counts, 1)))
+        constant = _laws([parts[MIDDLE]] * len(parts), dict.fromkeys(counts_of(parts[MIDDLE]), 1))
+        steady = _blade_of(found, frame, kind.blade, constant, like, header)
+        with suppress(FitError):
+            best = min(best, compared(few.turned(frame.turn), iter([steady]))[0], key=lambda each: each.rms)
+    nearest: Any = best.design
+    if not frame.turn:
+        return 0.0, nearest
+    # the leading edge is better known than by the closed blade
+    theta = float(np.real(Span(np.array([0.5])).values(nearest.leading_edge_theta)[0]))
+    law = np.array(law_points(nearest.leading_edge_theta)) - theta
+    return float(frame.turn - np.radians(theta)), replace(nearest, leading_edge_theta=tuple(law.tolist()))
+
+
+def _blade_of(
+    found: ChannelCurves, frame: _Frame, blade: type[SectionedBlade], section: Any, like: Any, header: DesignHeader
+) -> Any:
+    """The blade of sections that stand where those of a closed blade do."""
+    design = found.blade.design
+    metre = UNITS[header.length_unit]
     linear = design.arrangement == "linear"
-    place = [float(each.start[1]) / metre if linear else float(np.degrees(each.start[1])) for each in shapes]
-    if plane == UNROLLED:
-        place = [each / r for each, r in zip(place, radius, strict=True)]
+    place = [float(each.start[1]) / metre if linear else float(np.degrees(each.start[1])) for each in frame.shapes]
+    if frame.plane == UNROLLED:
+        place = [each / r for each, r in zip(place, found.values("leading_edge", START_SPANS)[:, 1], strict=True)]
     fields: dict[str, Any] = {
         "name": header.name,
         "length_unit": header.length_unit,
         "arrangement": design.arrangement,
         "blade_count": design.blade_count,
         "pitch": None if design.pitch is None else design.pitch * UNITS[design.length_unit] / metre,
+        "section": section,
     }
     name = "leading_edge_y" if linear else "leading_edge_theta"
     given = LAW_COUNT if like is None else len(law_points(getattr(like, name)))
     fields[name] = nearest_law(place, START_SPANS, given)
     if like is None:
         fields |= {edge: found.edge(edge, metre) for edge in EDGES}
-        fields |= {"flow_path": found.flow_path(metre, revolved=not linear), "plane": plane}
-        return [kind.blade(**fields, section=part) for part in sections]
+        return blade(**fields, flow_path=found.flow_path(metre, revolved=not linear), plane=frame.plane)
     fields |= {edge: found.edge_like(edge, getattr(like, edge), metre) for edge in EDGES}
-    return [with_stations_of(replace(like, **fields, section=sections[0]), like)]
+    return with_stations_of(replace(like, **fields), like)
 
 
 def _backwards(found: ChannelCurves, kind: FitFamily, like: Any, section: SectionShape) -> bool:
@@ -221,14 +256,22 @@ def _part_with_shape(parts: list[Any], counts: Mapping[str, int]) -> Any:
     return part
 
 
-def _planes(found: ChannelCurves, like: Any) -> tuple[str, ...]:
-    """The planes in which sections may be those of the family: where radii differ, they are not the same shapes."""
+def _planes(task: Task, found: ChannelCurves, like: Any, middle: SectionShape) -> list[tuple[str, float]]:
+    """The planes in which sections may be those of the family, and the turns about x of the machine there [rad].
+
+    Where radii differ, planes do not show the same shapes, and that of r theta neither wherever theta is counted from:
+    nobody says, and where the leading edge stands its angles are true.
+    """
     if found.blade.design.arrangement == "linear":
-        return (CONFORMAL,)
+        return [(CONFORMAL, 0.0)]
     if like is not None:
-        return (UNROLLED if like.plane == UNROLLED else CONFORMAL,)
+        return [(UNROLLED if like.plane == UNROLLED else CONFORMAL, 0.0)]
     radii = [found.values(edge, np.array([0.5]))[0, 1] for edge in EDGES]
-    return (CONFORMAL,) if max(radii) < SAME_RADIUS * min(radii) else (CONFORMAL, UNROLLED)
+    if max(radii) < SAME_RADIUS * min(radii):
+        return [(CONFORMAL, 0.0)]
+    turn = -float((middle.reversed() if found.backwards else middle).start[1])
+    own = [(CONFORMAL, 0.0), (UNROLLED, 0.0)]
+    return own if task.bounds else [*own, (UNROLLED, turn)]
 
 
 def _along_span(kind: FitFamily, shapes: list[SectionShape], first: Match) -> list[Match]:
@@ -240,7 +283,7 @@ def _along_span(kind: FitFamily, shapes: list[SectionShape], first: Match) -> li
     for shape in shapes[1:]:
         before = _part_of(found[-1])
         try:
-            found.append(_matched(kind, shape, shape.outline, [before, *kind.first_parts(shape, before)]))
+            found.append(_matched(kind, shape, shape.outline, [before, *kind.first_parts(shape, before)])[0])
         except FitError:
             found.append(found[-1])
     return found
@@ -252,8 +295,8 @@ def _part_of(match: Match) -> Any:
     return design.section
 
 
-def _matched(kind: FitFamily, shape: SectionShape, points: Reals, parts: Sequence[Any]) -> Match:
-    """The best match of points (n, 2) of a section from several parts."""
+def _matched(kind: FitFamily, shape: SectionShape, points: Reals, parts: Sequence[Any]) -> list[Match]:
+    """The best matches of points (n, 2) of a section from several parts, one of each kind, nearest first."""
     task = Task(points=points, weights=np.ones(len(points)), free=_section_parameters, bounds={})
     x, y = shape.start
     designs = (
@@ -262,7 +305,17 @@ def _matched(kind: FitFamily, shape: SectionShape, points: Reals, parts: Sequenc
         )
         for part in parts
     )
-    return searched(task, compared(task, designs)[0].design, rounds=QUICK_ROUNDS, fading=True)
+    best = {_kind_of(_part_of(each)): each for each in reversed(compared(task, designs))}
+    nearest = sorted(best.values(), key=lambda each: each.rms)[:CONSIDERED]
+    found = [searched(task, each.design, rounds=QUICK_ROUNDS, fading=True) for each in nearest]
+    return sorted(found, key=lambda each: each.rms)
+
+
+def _kind_of(part: Part) -> tuple[Any, ...]:
+    """What tells kinds of a part apart, which no search changes: classes, names, and what is not given."""
+    values = vars(part).values()
+    named = (each for each in values if each is None or isinstance(each, str | Part))
+    return type(part), *(_kind_of(each) if isinstance(each, Part) else each for each in named)
 
 
 def _section_parameters(design: Design) -> tuple[str, ...]:

@@ -188,7 +188,8 @@ def suction_pressure_parts(shape: SectionShape, like: SuctionPressure | None) ->
         tried = [like]
     else:
         sided = replace(SUCTION_PRESSURE, suction_side="upper" if shape.most_cambered[0] > 0.0 else "lower")
-        tried = [replace(sided, skeleton="pseudo"), sided]
+        both = [replace(sided, skeleton="pseudo"), sided]
+        tried = [*both, *(replace(each, edges="C1") for each in both)]
     return [_suction_pressure(shape, each, wedge) for each in tried for wedge in WEDGES]
 
 

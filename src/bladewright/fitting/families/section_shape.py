@@ -99,29 +99,32 @@ class SectionShape:
         )
 
 
-def unrolled(section: Section, points: Reals) -> Reals:
-    """Points (n, 2) of a section in the plane (m', theta), laid out in the plane (m, r theta) [m]: dm = r dm'."""
+def unrolled(section: Section, points: Reals, turn: float = 0.0) -> Reals:
+    """Points (n, 2) of a section in the plane (m', theta), laid out in the plane (m, r theta) [m]: dm = r dm'.
+
+    `turn` [rad] is added to theta before.
+    """
     low, high = min(float(np.min(points[:, 0])), 0.0), max(float(np.max(points[:, 0])), 0.0)
     at = np.linspace(low, high, FINE_PLACES)
     radius = np.real(section.scale(at))
     way = cumulative_trapezoid(radius, at, initial=0.0)
     way -= np.interp(0.0, at, way)
     x, around = points.T
-    return np.stack([np.interp(x, at, way), np.interp(x, at, radius) * around], axis=-1)
+    return np.stack([np.interp(x, at, way), np.interp(x, at, radius) * (around + turn)], axis=-1)
 
 
-def section_shape(section: Section, *, unroll: bool = False) -> SectionShape:
-    """The shape of a built section, in its plane, or in the plane (m, r theta)."""
+def section_shape(section: Section, *, unroll: bool = False, turn: float = 0.0) -> SectionShape:
+    """The shape of a built section, in its plane, or in the plane (m, r theta) after a `turn` about x [rad]."""
     upper, lower = (np.real(section.curves[name](PLACES)) for name in ("upper", "lower"))
     if unroll:
-        upper, lower = unrolled(section, upper), unrolled(section, lower)
+        upper, lower = unrolled(section, upper, turn), unrolled(section, lower, turn)
     # the chord line ends in the middle of a blunt edge
     start, end = (0.5 * (upper[at] + lower[at]) for at in (0, -1))
     along = end - start
     chord, stagger = float(np.hypot(*along)), float(np.arctan2(along[1], along[0]))
-    turn = np.array([[np.cos(stagger), -np.sin(stagger)], [np.sin(stagger), np.cos(stagger)]]) / chord
+    upright = np.array([[np.cos(stagger), -np.sin(stagger)], [np.sin(stagger), np.cos(stagger)]]) / chord
     scale: Any = np.ones(2) if unroll else np.real(section.scale(np.array([start[0], end[0]])))
     radii = (float(radius / (each * chord)) for radius, each in zip(section.edge_radii, scale, strict=True))
     first, last = (min(radius, 0.5) for radius in radii)
-    upper, lower = ((side - start) @ turn for side in (upper, lower))
+    upper, lower = ((side - start) @ upright for side in (upper, lower))
     return SectionShape(chord=chord, stagger=stagger, start=start, upper=upper, lower=lower, edge_radii=(first, last))

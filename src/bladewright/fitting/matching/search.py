@@ -89,6 +89,12 @@ Progress = Callable[[str], None]
 """is handed a few words on what is done"""
 
 
+def about_x(angle: float) -> Reals:
+    """The rotation (3, 3) about x by which theta grows by an angle [rad]."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.array([[1.0, 0.0, 0.0], [0.0, cosine, sine], [0.0, -sine, cosine]])
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Task:
     """What is sought: points, weights, free parameters and bounds."""
@@ -115,6 +121,8 @@ class Task:
     """edges that are cut off, which may stand out of the cloud"""
     walls: tuple[Reals, ...] = ()
     """(m, 2) points of hub and shroud beside the blade, in (x, r) or (x, z) [m]: they show where it ends"""
+    turn: float = 0.0
+    """angle about x by which the points are turned from where they are given [rad]"""
     best_so_far: BestSoFar = field(default_factory=BestSoFar)
     """the nearest designs that searches have reached"""
 
@@ -126,6 +134,12 @@ class Task:
     def thinned(self, most: int) -> "Task":
         """The same task with at most so many of its points, drawn at random but always the same."""
         return self.part(random_subset(len(self.points), most))
+
+    def turned(self, angle: float) -> "Task":
+        """The same task with its points (n, 3) turned about x, so that theta grows by an angle [rad]."""
+        if not angle:
+            return self
+        return replace(self, points=self.points @ about_x(angle).T, turn=self.turn + angle)
 
     def holding(self, held: Collection[str]) -> "Task":
         """The same task with some parameters held."""
@@ -154,6 +168,8 @@ class Match:
     converged: bool = False
     """whether the last descent converged"""
     interrupted: bool = False
+    turn: float = 0.0
+    """angle about x by which the task's points are turned [rad]"""
 
     @property
     def model(self) -> Model:
@@ -347,6 +363,7 @@ def _prepared_round(
         noise_estimate=noise_estimate,
         ends=ends,
         damping=FIRST_DAMPING if before is None else before.damping,
+        turn=task.turn,
         evaluations=1 if before is None else before.evaluations + 1,
     )
 
