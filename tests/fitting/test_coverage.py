@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bladewright.fitting.assessment.coverage import bare_places, shape_bands, uncovered_edges
+from bladewright.fitting.assessment.coverage import bare_at_ends, bare_places, shape_bands, uncovered_edges
 from bladewright.fitting.assessment.estimates import parameter_estimates
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import free_parameters_of
@@ -78,6 +78,17 @@ def test_as_many_control_points_along_the_span_are_shown_as_there_are_rows(v, sh
 
 def test_points_all_over_a_blade_show_as_many_control_points_as_a_law_may_have():
     assert rows_shown(np.random.default_rng(0).random(1000)) == MOST_SPAN
+
+
+def test_an_end_without_points_on_a_part_of_the_chord_is_bare_there_alone():
+    design, draw = DESIGNS["aachen-stator"], np.random.default_rng(0)
+    u, v = np.concatenate([draw.random((2, 2000)), [[0.1, 0.9, 0.9], [0.0, 0.0, 1.0]]], axis=1)
+    shown = (v > 0.15) | (u < 0.2) | (u > 0.4)
+    points = np.concatenate([np.real(side(u[shown], v[shown])) for side in design.build().sides])
+    free = free_parameters_of("stagger", None, started=True)
+    found = searched(Task(points=points, weights=np.ones(len(points)), free=free, bounds={}), design, rounds=0)
+    side, u, v = np.array([0, 1, 0, 1, 0]), np.array([0.3, 0.3, 0.1, 0.9, 0.3]), np.array([0.0, 0.1, 0.0, 0.0, 0.5])
+    assert bare_at_ends(found, side, u, v).tolist() == [True, True, False, False, False]
 
 
 def test_an_edge_without_points_on_a_part_of_the_span_is_bare_there_alone():

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from bladewright.fitting.assessment.coverage import (
     EDGE_PARAMETERS,
     NORMAL_95,
+    bare_at_ends,
     bare_places,
     foreign_edges,
     least_thickness,
@@ -105,7 +106,7 @@ def failures_of(
 def _not_shown(statistics: ParameterEstimates, match: Match) -> list[str]:
     """Where a side, an edge or an end is known less well than is trusted, and than one point there would show it.
 
-    Where an edge that is known elsewhere has no points, that is a note (`_bare_edges`).
+    Where an edge or an end that is known elsewhere has no points, that is a note (`_bare_notes`).
     """
     chord, one_point = match.model.chord, NORMAL_95 * match.noise_estimate.noise
     ends, edges = max(KNOWN * chord, one_point), max(GROSS_DEVIATION[1] * chord, one_point)
@@ -132,25 +133,34 @@ def _not_shown(statistics: ParameterEstimates, match: Match) -> list[str]:
 
 
 def _bare(match: Match, side: NDArray[np.intp], u: Reals, v: Reals, half_widths: Reals) -> NDArray[np.bool_]:
-    """Whether places (n,) lie at an edge past all points there, which elsewhere along the span is known."""
+    """Whether places (n,) lie at an edge past all points there, which elsewhere along the span is known.
+
+    Or at an end past all points there, which elsewhere along the chord is known; and they as well as an edge is to be.
+    """
     known = half_widths <= GROSS_DEVIATION[1] * match.model.chord
-    bare = bare_places(match, side, u, v)
-    edges = [np.abs(u - end) < BETWEEN_EDGES for end in EDGE_PARAMETERS.values() if np.any(known[u == end])]
-    return np.asarray(bare & np.any(edges, axis=0)) if edges else np.zeros_like(bare)
+    at_edge, at_end = np.zeros_like(known), np.zeros_like(known)
+    for end in EDGE_PARAMETERS.values():
+        at_edge |= (np.abs(u - end) < BETWEEN_EDGES) & np.any(known[u == end])
+        at_end |= (np.abs(v - end) < 0.5) & np.any(known[v == end])
+    return np.asarray((bare_places(match, side, u, v) & at_edge) | (bare_at_ends(match, side, u, v) & at_end & known))
 
 
-def _bare_edges(statistics: ParameterEstimates, match: Match) -> list[str]:
-    """Edges without points on a part of the span, where they are known less well than is trusted."""
+def _bare_notes(statistics: ParameterEstimates, match: Match) -> list[str]:
+    """Edges and ends without points on a part of the blade, where they are known less well than is trusted."""
     side, u, v, half_widths = shape_bands(match, statistics)
-    limit, found = GROSS_DEVIATION[1] * match.model.chord, []
-    bare = _bare(match, side, u, v, half_widths) & (half_widths > limit)
-    for name, end in EDGE_PARAMETERS.items():
-        rows = np.flatnonzero(bare & (np.abs(u - end) < BETWEEN_EDGES))
+    near = np.minimum(u, 1.0 - u) < BETWEEN_EDGES
+    limits = np.where(near, GROSS_DEVIATION[1], KNOWN) * match.model.chord
+    bare = _bare(match, side, u, v, half_widths) & (half_widths > limits)
+    found = []
+    edges = {name: (np.abs(u - end) < BETWEEN_EDGES, v, "v") for name, end in EDGE_PARAMETERS.items()}
+    ends = {name: (~near & (np.abs(v - end) < 0.5), u, "u") for name, end in (("hub", 0.0), ("shroud", 1.0))}
+    for name, (there, along, letter) in (edges | ends).items():
+        rows = np.flatnonzero(bare & there)
         if len(rows):
             known = with_unit(match.design, float(np.max(half_widths[rows])), 2)
             found.append(
-                f"no point shows the {name} from v = {min(v[rows]):.2g} to {max(v[rows]):.2g}: it is known there to "
-                f"{known} either way (95 %)"
+                f"no point shows the {name} from {letter} = {min(along[rows]):.2g} to {max(along[rows]):.2g}: it is "
+                f"known there to {known} either way (95 %)"
             )
     return found
 
@@ -254,7 +264,7 @@ def notes_of(
         for name, width in foreign_edges(match).items()
     ]
     if target.open and not match.interrupted:
-        sentences += _bare_edges(statistics, match)
+        sentences += _bare_notes(statistics, match)
     loose = loose_ends(match)
     if loose:
         sentences.append(_loose_ends_message(match, loose))

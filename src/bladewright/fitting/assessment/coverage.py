@@ -117,11 +117,24 @@ def shape_bands(match: Match, statistics: ParameterEstimates) -> tuple[NDArray[n
 def bare_places(match: Match, side: NDArray[np.intp], u: Reals, v: Reals) -> NDArray[np.bool_]:
     """Whether places (n,) are further along a side than all points of their part of the span, outliers too."""
     feet = match.state.footpoints
-    own, part = (side_of * SPAN_PARTS + _part_of_span(at) for side_of, at in ((feet.side, feet.v), (side, v)))
+    return _past_points(feet.side, feet.v, feet.u, side, v, u)
+
+
+def bare_at_ends(match: Match, side: NDArray[np.intp], u: Reals, v: Reals) -> NDArray[np.bool_]:
+    """Whether places (n,) are nearer to an end of the blade than all points of their part of the chord."""
+    feet = match.state.footpoints
+    return _past_points(feet.side, feet.u, feet.v, side, u, v)
+
+
+def _past_points(
+    own_side: NDArray[np.intp], own_part: Reals, own: Reals, side: NDArray[np.intp], part: Reals, at: Reals
+) -> NDArray[np.bool_]:
+    """Whether places (n,) lie past all points (m,) of the same side and of the same of `SPAN_PARTS` equal parts."""
+    rows, places = (each * SPAN_PARTS + _part_of_span(along) for each, along in ((own_side, own_part), (side, part)))
     low, high = (np.full(2 * SPAN_PARTS, end) for end in (np.inf, -np.inf))
-    np.minimum.at(low, own, feet.u)
-    np.maximum.at(high, own, feet.u)
-    return np.asarray((u < low[part]) | (u > high[part]))
+    np.minimum.at(low, rows, own)
+    np.maximum.at(high, rows, own)
+    return np.asarray((at < low[places]) | (at > high[places]))
 
 
 def least_thickness(match: Match) -> float:

@@ -120,7 +120,14 @@ def selected_match(
     if target.tolerance is not None:
         confirmed = len(many.points) == len(several.points)
         return (found if confirmed else confirmed_match(many, found, target.tolerance)), reason
-    return determined(many, found) if target.open else (_searched_further(many, found), reason)
+    if not target.open:
+        return _searched_further(many, found), reason
+    last, note = determined(many, found)
+    if has_systematic_misfit(last) and last.maximum > _open_limit(last):
+        # what the last search left out or held made it miss what was predicted
+        nearer, other = determined(many, selection.within(rich, ENOUGH * rich.model.chord)[0])
+        last, note = (nearer, other) if nearer.maximum < last.maximum else (last, note)
+    return last, note
 
 
 def _searched_further(task: Task, match: Match) -> Match:
