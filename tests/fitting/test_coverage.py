@@ -87,7 +87,7 @@ def test_an_end_without_points_on_a_part_of_the_chord_is_bare_there_alone():
     points = np.concatenate([np.real(side(u[shown], v[shown])) for side in design.build().sides])
     free = free_parameters_of("stagger", None, started=True)
     found = searched(Task(points=points, weights=np.ones(len(points)), free=free, bounds={}), design, rounds=0)
-    side, u, v = np.array([0, 1, 0, 1, 0]), np.array([0.3, 0.3, 0.1, 0.9, 0.3]), np.array([0.0, 0.1, 0.0, 0.0, 0.5])
+    side, u, v = np.array([0, 1, 0, 1, 0]), np.array([0.3, 0.3, 0.1, 0.9, 0.3]), np.array([0.0, 0.1, 0.01, 0.01, 0.5])
     assert bare_at_ends(found, side, u, v).tolist() == [True, True, False, False, False]
 
 
