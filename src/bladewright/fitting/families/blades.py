@@ -29,11 +29,14 @@ from bladewright.fitting.models.sectioned import infeasibility
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import Span, law_points
+from bladewright.section.unified_limits import RADII
 
 QUICK_POINTS, THOROUGH_POINTS = 1000, 12_000
 """points of the search for the closed blade, and of what shows it (`THOROUGH_POINTS`)"""
 QUICK_ROUNDS = 4
 """rounds of the search for the closed blade from which the family's first design is taken"""
+SMALLER_RADII = 0.8
+"""share of its edge radii with which a closed blade is built that is refused with all (design/first_guesses.md)"""
 WALLS_HELD_NOTE = "hub and shroud are held as they are given"
 """note where the flow path is given"""
 ROUNDNESS_PLACE, ROUNDER_RATIO = 0.04, 1.3
@@ -86,8 +89,10 @@ def _closed_blade(task: Task, header: DesignHeader, like: Any) -> Blade:
     points, row = task.thinned(THOROUGH_POINTS).points, header.row(like)
     first = first_blade(points, structure=INITIAL_BLADES[-1], name=header.name, length_unit=header.length_unit, **row)
     few = replace(task.thinned(QUICK_POINTS), free=FreeParameters(), bounds={})
-    designs: list[Any] = [searched(few, first, noise=GUESS_NOISE, rounds=QUICK_ROUNDS).design, first]
-    for design in designs:
+    found: Any = searched(few, first, noise=GUESS_NOISE, rounds=QUICK_ROUNDS).design
+    radii = {path: SMALLER_RADII * value for path, value in found.parameters().items() if path.startswith(RADII)}
+    # searches hold edge radii at places along the span: between them they may be larger than the thickness holds
+    for design in (found, found.changed(radii), first):
         try:
             blade: Blade = design.build()
         except DesignError:
