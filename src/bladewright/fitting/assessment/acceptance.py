@@ -70,6 +70,11 @@ class MatchTarget:
         return self.tolerance is None and self.parameters is None and not self.structured
 
 
+def trusted_distance(match: Match) -> float:
+    """The largest distance [m] that a match of which nothing is asked may have: of exact points less."""
+    return (EXACT if match.maximum <= EXACT * match.model.chord else NEAR_EVERYWHERE) * match.model.chord
+
+
 def failures_of(
     measurement: Measurement, statistics: ParameterEstimates, match: Match, target: MatchTarget
 ) -> tuple[str, ...]:

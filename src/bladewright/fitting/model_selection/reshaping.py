@@ -214,7 +214,8 @@ def rich_structure(
     """A structure with more control points in every law than a match of so many points is likely to need.
 
     Along the span it has no more of them than `rows` of points, and where it is to be `sampled`, along the chord no
-    more than a design's own samples determine. Laws of which nothing is `free` keep theirs.
+    more than a design's own samples determine: further ones lie closer to the edges, where the thickness then has to
+    bend like a nose (design/matching.md). Laws of which nothing is `free` keep theirs.
     """
     whole = richest(design)
     if sampled and isinstance(whole, Structure):

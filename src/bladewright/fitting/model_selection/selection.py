@@ -15,7 +15,7 @@ import numpy as np
 
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, MatchTarget
+from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, MatchTarget, trusted_distance
 from bladewright.fitting.assessment.estimates import undetermined_parameters
 from bladewright.fitting.free_parameters import corner_radii
 from bladewright.fitting.matching.noise import EXACT
@@ -59,15 +59,12 @@ FINAL_REDUCTION = 1e-3
 """predicted relative reduction of the cost that a step of the last search needs: half and twice change nothing measured
 (design/matching_constants.md)."""
 QUICK_POINTS, SEVERAL_POINTS, THOROUGH_POINTS = 1000, 4000, 12_000
-"""points of the first search in space, of those that choose control points, which need every row of points, and of the
-last one: time is proportional to them."""
+"""points of the first search in space, of those that choose control points, and of the last; time grows with them."""
 WEAK_REGULARISATION = 0.1
 """factor of the regularisation where a match is only improved."""
 REFUSED_MARGIN = 6.0
 """factor of the margin of edge radii where a rich match that searches allow is refused when built."""
-CORNERS_HELD_NOTE = (
-    "the radii of the channel's corners are read off the points at hub and shroud, held, and not counted"
-)
+CORNERS_HELD_NOTE = "the radii of the channel's corners are read off the points, held, and not counted"
 """note where the channel's corners are read off the points"""
 HELD_NOTE = "the points do not determine {}, which are held where a smooth design has them"
 """note where parameters are held"""
@@ -99,13 +96,11 @@ def selected_match(
         # laws that need no control points along the span begin as constants
         found = replace(selection, task=few).well_predicted(found)
         selection = replace(selection, first=found.design)
-    near = NEAR * found.model.chord
-    if target.open and found.maximum < near:
+    if target.open and found.maximum < NEAR * found.model.chord:
         rich = found
     else:
-        holds = partial(selection.holds, tolerance=target.tolerance or np.inf)
-        enough, sampled = _near_enough if target.open else holds, target.parameters is None
-        rich = selection.rich(found, enough, slim=not target.open, sampled=sampled)
+        enough = _near_enough if target.open else partial(selection.holds, tolerance=target.tolerance or np.inf)
+        rich = selection.rich(found, enough, slim=not target.open, sampled=target.parameters is None)
     if len(rich.rows) < len(several.points):
         # no richer one has a shape, or none is needed: the first match, of few points, stands
         rich = evaluated(several, rich.design, noise=rich.rms)
@@ -123,10 +118,10 @@ def selected_match(
     if not target.open:
         return _searched_further(many, found), reason
     last, note = determined(many, found)
-    if has_systematic_misfit(last) and last.maximum > _open_limit(last):
+    if has_systematic_misfit(last) and last.maximum > trusted_distance(last):
         # what the last search left out or held made it miss what was predicted
-        nearer, other = determined(many, selection.within(rich, ENOUGH * rich.model.chord)[0])
-        last, note = (nearer, other) if nearer.maximum < last.maximum else (last, note)
+        within, _ = selection.within(rich, ENOUGH * rich.model.chord)
+        last, note = min((last, note), determined(many, within), key=lambda each: each[0].maximum)
     return last, note
 
 
@@ -134,7 +129,7 @@ def _searched_further(task: Task, match: Match) -> Match:
     """A match searched on, or as it is where that cannot be built, or is far from some points, and the match is not."""
     try:
         found = searched(task, match.design, noise=match.rms, min_reduction=FINAL_REDUCTION)
-        near = max(_open_limit(match), NEAR_RICH * match.maximum)
+        near = max(trusted_distance(match), NEAR_RICH * match.maximum)
         if found.maximum > near or (is_refused(found) and not is_refused(match)):
             found = evaluated(task, match.design, noise=match.rms)
     except FitError:
@@ -226,9 +221,8 @@ class _Selection:
     def rich(self, match: Match, enough: Callable[[Match], bool], *, slim: bool, sampled: bool = False) -> Match:
         """The match of a rich structure, and of ever richer ones until one is near enough or comes hardly nearer.
 
-        Where it is to be `sampled`, the first has no more control points along the chord than the samples of a section
-        determine: more of them move its samples towards the edges, where laws then have to bend like a nose. In space,
-        where points are exact or these are to be `slim`, a structure loses what it does not need before it is widened.
+        Where it is to be `sampled`, the first has no more control points along the chord than its samples determine. In
+        space, where points are exact or it is to be `slim`, a structure loses what it does not need before it grows.
         """
         found, rounds = match, QUICK_ROUNDS + 1
         shown = len(self.task.points), rows_shown(match.state.footpoints.v[match.rows])
@@ -290,7 +284,7 @@ class _Selection:
         noise = (candidates[0].deviation if candidates else 0.0) * (1.0 + NOISE_QUANTILE / np.sqrt(2.0 * model.points))
         nearest = NEAR_RICH * min((each.largest for each in candidates), default=0.0)
         aim = max(NEAR if nearest <= EXACT else ENOUGH, nearest)
-        near = max(_open_limit(rich), NEAR_RICH * largest_of(rich, rich))
+        near = max(trusted_distance(rich), NEAR_RICH * largest_of(rich, rich))
         systematic = has_systematic_misfit(rich)
         chosen = [each for each in candidates if (each.largest <= aim if systematic else each.deviation <= noise)]
         chosen = chosen or candidates[:1]
@@ -306,7 +300,7 @@ class _Selection:
 
     def near_everywhere(self, rich: Match) -> Match:
         """The match that predicts well, or one that is nearer where that is far from some points."""
-        found, limit = self.well_predicted(rich), _open_limit(rich)
+        found, limit = self.well_predicted(rich), trusted_distance(rich)
         if not has_systematic_misfit(found) or largest_of(found, rich) <= limit:
             return found
         weights = reweighted(self.task.weights, found.state.footpoints.distances, limit)
@@ -399,11 +393,6 @@ class _Selection:
 def _near_enough(rich: Match) -> bool:
     """Whether a rich match of which nothing is asked is near enough: exact points are met more nearly."""
     return rich.maximum <= (NEAR if is_exact(rich) else NEAR_EVERYWHERE) * rich.model.chord
-
-
-def _open_limit(rich: Match) -> float:
-    """The largest distance [m] of a match of which nothing is asked."""
-    return (EXACT if rich.maximum <= EXACT * rich.model.chord else NEAR_EVERYWHERE) * rich.model.chord
 
 
 def _with_corners_held(task: Task) -> Task:
