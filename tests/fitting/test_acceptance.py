@@ -53,6 +53,21 @@ def test_deviations_that_are_the_clouds_own_noise_do_not_make_a_match_coarse(noi
     assert any("not found" in each for each in found) is not passed
 
 
+@pytest.mark.parametrize("together", [True, False])
+def test_outliers_beside_each_other_are_a_shape_that_is_not_found(together):
+    built, draw = STATOR.build(), np.random.default_rng(8)
+    u, v = draw.random((2, 1500))
+    points = np.concatenate([np.real(side(u, v)) for side in built.sides])
+    found, measurement = matched(points, STATOR), measured(points, built)
+    number = int(0.08 * len(points))
+    left_out = np.argsort(np.concatenate([u, 2.0 + u]))[:number] if together else draw.permutation(len(points))[:number]
+    inliers = np.ones(len(points), dtype=bool)
+    inliers[left_out] = False
+    measurement = replace(measurement, noise_estimate=replace(measurement.noise_estimate, inliers=inliers))
+    said = failures_of(measurement, parameter_estimates(found), found, MatchTarget(structured=True))
+    assert any("beside each other" in each for each in said) is together
+
+
 def test_points_of_a_solid_on_its_end_faces_are_said_to_be_there():
     built = STATOR.build()
     random = np.random.default_rng(4)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from bladewright.fitting.assessment.coverage import (
     EDGE_PARAMETERS,
@@ -21,7 +22,7 @@ from bladewright.fitting.assessment.estimates import ParameterEstimates
 from bladewright.fitting.assessment.measurement import Measurement
 from bladewright.fitting.assessment.report import with_unit
 from bladewright.fitting.initial_guess.blade import AXES_HINT
-from bladewright.fitting.matching.noise import EXACT
+from bladewright.fitting.matching.noise import EXACT, LARGEST_GROUP, NEIGHBOURS, groups
 from bladewright.fitting.matching.search import Match
 from bladewright.nurbs.basis import Reals
 
@@ -86,6 +87,13 @@ def failures_of(
     off = measurement.outliers - int(np.count_nonzero(measurement.faced))
     if off > LARGEST_OUTLIER_SHARE * len(distances):
         failures.append(f"{off} of {len(distances)} points lie off the blade: is it one blade, and of this family?")
+    together, farthest = _outlying_group(measurement)
+    if together > LARGEST_GROUP * len(distances):
+        failures.append(
+            f"{together} of {len(distances)} points beside each other lie up to {with_unit(match.design, farthest, 2)} "
+            "off the blade: the shape is not found there, or they belong to something else; leave them out, or give a "
+            "start"
+        )
     worst = int(np.flatnonzero(inliers)[np.argmax(distances[inliers])])
     if target.tolerance is not None and distances[worst] > target.tolerance:
         failures.append(
@@ -106,6 +114,21 @@ def failures_of(
         failures += _not_shown(statistics, match)
     failures += _partly_shown(match)
     return tuple(failures)
+
+
+def _outlying_group(measurement: Measurement) -> tuple[int, float]:
+    """Number of points in the largest group of outliers beside each other, and its largest distance [m].
+
+    Outliers scatter; a part of the blade that is not found does not.
+    """
+    feet, outlier = measurement.footpoints, ~measurement.inliers & ~measurement.faced & (measurement.set_aside == "")
+    points, rows = feet.points + feet.miss, np.flatnonzero(outlier)
+    if len(rows) <= LARGEST_GROUP * len(points):
+        return 0, 0.0
+    _, index = cKDTree(points).query(points[rows], k=NEIGHBOURS[points.shape[1]] + 1)
+    labels = groups(outlier[index], (np.cumsum(outlier) - 1)[index])
+    largest = rows[labels == np.argmax(np.bincount(labels))]
+    return len(largest), float(np.max(measurement.distances[largest]))
 
 
 def _not_shown(statistics: ParameterEstimates, match: Match) -> list[str]:

@@ -179,7 +179,7 @@ def _cut_off(
     index = around.index
     own = np.broadcast_to(np.arange(len(heights))[:, None], index.shape)
     linked = steps(own, index)
-    label = _groups(linked, index)
+    label = groups(linked, index)
     size = np.bincount(label)[label]
     core = np.flatnonzero(size > largest if np.any(size > largest) else size == size.max())
     separate = np.flatnonzero(~np.isin(np.arange(len(heights)), core))
@@ -194,7 +194,7 @@ def _cut_off(
     return ~joined[label]
 
 
-def _groups(linked: NDArray[np.bool_], index: NDArray[np.intp]) -> NDArray[np.intp]:
+def groups(linked: NDArray[np.bool_], index: NDArray[np.intp]) -> NDArray[np.intp]:
     """Labels (n,) of the groups that points form with those neighbours (n, k) to which they are linked (n, k)."""
     start, way = np.nonzero(linked)
     graph = csr_array((np.ones(len(start), dtype=np.int8), (start, index[start, way])), shape=(len(index),) * 2)
