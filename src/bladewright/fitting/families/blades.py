@@ -48,8 +48,6 @@ FEASIBILITY_SPANS = Span(np.linspace(0.0, 1.0, 13))
 """places along the span at which laws must leave sections a shape"""
 LAW_COUNT = 3
 """control points of each law along the span where no structure is given"""
-BLADES_TRIED = 2
-"""planes in which whole blades are tried: a second one takes 4 to 8 s (design/matching.md)"""
 CONFORMAL, UNROLLED = "m'-theta", "m-r*theta"
 """planes of stream surfaces in which sections are tried"""
 SAME_RADIUS = 1.02
@@ -132,7 +130,8 @@ class _Frame:
 def _first(task: Task, closed: Blade, kind: FitFamily, like: Any, header: DesignHeader) -> tuple[float, Design]:
     """The blade of the family nearest to the points whose sections are those of a closed blade; the turn of its frame.
 
-    Planes that the sections in the middle hardly tell apart are told apart by a short search of whole blades.
+    Planes that the sections in the middle hardly tell apart are told apart by a short search of whole blades, of each
+    plane with theta counted from where these meet it best.
     """
     found = ChannelCurves(blade=closed)
     built = [closed.section(float(v)) for v in START_SPANS]
@@ -155,11 +154,13 @@ def _first(task: Task, closed: Blade, kind: FitFamily, like: Any, header: Design
         tried.append((matches[0].rms, frame, matches[0]))
     if not tried:
         raise FitError(str(refusal)) from refusal
-    tried = sorted(tried, key=lambda each: each[0])[:BLADES_TRIED]
+    tried.sort(key=lambda each: each[0])
     few, blades = task.thinned(QUICK_POINTS), list[tuple[Match, _Frame, list[Any]]]()
     for rms, frame, chosen in tried:
         if rms > PROMISING * tried[0][0]:
             break
+        if any(frame.plane == each.plane for _, each, _ in blades):
+            continue
         halves = (_along_span(kind, way, chosen) for way in (frame.shapes[MIDDLE::-1], frame.shapes[MIDDLE:]))
         first, last = ([_part_of(each) for each in half] for half in halves)
         parts = [*first[:0:-1], *last]
