@@ -31,12 +31,13 @@ NEAR_EVERYWHERE = 5e-4
 blades are milled."""
 GROSS_DEVIATION = (1.5e-3, 5e-3)
 """mean and largest deviation, of the chord, beyond which no match is trusted without a tolerance. A mean of 0.15 % on
-both sides of a turbine's throat of 0.3 chords changes it by 1 %; 0.5 % is half the radius of a usual leading edge."""
-KNOWN = 1e-3
-"""how near, of the chord, sides are to be known between the edges, and ends, where nothing is asked: 0.1 mm of 100 mm.
-Bands of matches that are as near are 8e-4 at most, of those that are off between their points 3e-3 at least
-(design/matching.md). Edges may be known to the largest deviation that is trusted: a sharp tip moves by more than its
-sides."""
+both sides of a turbine's throat of 0.3 chords changes it by 1 %; 0.5 % is half the radius of a usual leading edge.
+So well are sides between the edges to be known where nothing is asked, and edges, whose sharp tips move by more than
+their sides: bands of sides that are met are 1.7e-3 at most, of those that are off between their points 3.4e-3 at least
+(design/matching.md)."""
+KNOWN_END = 1e-3
+"""how near, of the chord, ends are to be known where nothing is asked: 0.1 mm of 100 mm. Ends that are met are known to
+6e-4, those that are off to 1.2e-3 (design/matching.md)."""
 SHARED_VARIANCE = 0.5
 """share of the variance that neighbours have in common from which more of a deviation is the shape's than noise."""
 LARGEST_OUTLIER_SHARE = 0.1
@@ -137,9 +138,9 @@ def _not_shown(statistics: ParameterEstimates, match: Match) -> list[str]:
     Where an edge or an end that is known elsewhere has no points, that is a note (`_bare_notes`).
     """
     chord, one_point = match.model.chord, NORMAL_95 * match.noise_estimate.noise
-    ends, edges = max(KNOWN * chord, one_point), max(GROSS_DEVIATION[1] * chord, one_point)
+    ends, sides, edges = (max(each * chord, one_point) for each in (KNOWN_END, *GROSS_DEVIATION))
     side, u, v, half_widths = shape_bands(match, statistics)
-    limits = np.where(np.minimum(u, 1.0 - u) < BETWEEN_EDGES, edges, ends)
+    limits = np.where(np.minimum(u, 1.0 - u) < BETWEEN_EDGES, edges, sides)
     limits[_bare(match, side, u, v, half_widths)] = np.inf
     worst = int(np.argmax(half_widths / limits))
     found = []
@@ -177,7 +178,7 @@ def _bare_notes(statistics: ParameterEstimates, match: Match) -> list[str]:
     """Edges and ends without points on a part of the blade, where they are known less well than is trusted."""
     side, u, v, half_widths = shape_bands(match, statistics)
     near = np.minimum(u, 1.0 - u) < BETWEEN_EDGES
-    limits = np.where(near, GROSS_DEVIATION[1], KNOWN) * match.model.chord
+    limits = np.where(near, GROSS_DEVIATION[1], GROSS_DEVIATION[0]) * match.model.chord
     bare = _bare(match, side, u, v, half_widths) & (half_widths > limits)
     found = []
     edges = {name: (np.abs(u - end) < BETWEEN_EDGES, v, "v") for name, end in EDGE_PARAMETERS.items()}
