@@ -23,12 +23,12 @@ WHOLE |= {"NEAR_PLACES", "BORDER_POINTS"}
 
 
 def machines():
-    """The points of every cloud, x, r and theta, as many as a first guess takes."""
+    """The points of every cloud, x, r and theta, and which of them a first guess slices."""
     found = {name: clouds.measured(name).points for name in MEASURED}
     found |= {name: clouds.cloud_of(clouds.example(name)).points for name in EXAMPLES}
     found |= {name: SHAPES[name]().points(np.random.default_rng(11)) for name in FOREIGN}
     return {
-        name: channel.machine_coordinates(points[even_subset(points, blade.DRAWN_POINTS)], "annular")
+        name: (channel.machine_coordinates(points, "annular"), even_subset(points, blade.DRAWN_POINTS))
         for name, points in found.items()
     }
 
@@ -46,9 +46,9 @@ def numbers(module):
 def distances(of):
     """Mean distances from the best slices, of the chord; infinite where there are none."""
     found = []
-    for machine in of.values():
+    for machine, rows in of.values():
         try:
-            found.append(channel.ranked_channels(machine, revolved=True)[0].mean_distance)
+            found.append(channel.ranked_channels(machine, rows, revolved=True)[0].mean_distance)
         except (BladewrightError, ArithmeticError, ValueError, IndexError, np.linalg.LinAlgError):
             found.append(np.inf)
     return np.array(found)

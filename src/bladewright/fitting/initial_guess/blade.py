@@ -32,7 +32,7 @@ from bladewright.section.checks import UNITS
 AXES_HINT = "x must be the machine axis: say which column is which (--columns), or name the axis (--axis)"
 """what may be wrong with a cloud near which no blade is found"""
 DRAWN_POINTS, SEARCHED_POINTS = 1200, 500
-"""points that show the outline and the slices, and points of the search (`SEARCHED_POINTS`); they bound the time
+"""points that show the slices, and points of the search (`SEARCHED_POINTS`); they bound the time
 (design/matching_constants.md)."""
 FEW = INITIAL_BLADES[1]
 """numbers of control points of the blade that is searched"""
@@ -60,8 +60,8 @@ def first_blade(
     apart. Raises FitError where no blade that can be built lies near the points.
     """
     points = without_isolated_points(np.unique(np.asarray(points, dtype=np.float64), axis=0))
-    points = points[even_subset(points, DRAWN_POINTS)]
     arrangement, channels = arranged_channels(points, arrangement)
+    points = points[even_subset(points, DRAWN_POINTS)]
     some = points[random_subset(len(points), SEARCHED_POINTS)]
     task = Task(points=some, weights=np.ones(len(some)), free=FreeParameters(), bounds={})
     header: dict[str, Any] = {"name": name, "length_unit": length_unit, "arrangement": arrangement}
@@ -146,11 +146,12 @@ SPAN_POINTS = 600
 
 def arranged_channels(points: Reals, arrangement: Arrangement | None) -> tuple[Arrangement, list[SlicedChannel]]:
     """The arrangement of the blade of points (n, 3) [m], unless it is given, and its likely channels with slices."""
-    known = arrangement or _arrangement_by_axis(points) or _arrangement_by_rows(points)
-    annular = [] if known == "linear" else ranked_channels(machine_coordinates(points, "annular"), revolved=True)
+    rows = even_subset(points, DRAWN_POINTS)
+    known = arrangement or _arrangement_by_axis(points[rows]) or _arrangement_by_rows(points[rows])
+    annular = [] if known == "linear" else ranked_channels(machine_coordinates(points, "annular"), rows, revolved=True)
     if known == "annular" or (annular and annular[0].mean_distance < ANNULAR_AT_ONCE):
         return "annular", annular
-    linear = ranked_channels(machine_coordinates(points, "linear"), revolved=False)
+    linear = ranked_channels(machine_coordinates(points, "linear"), rows, revolved=False)
     if known == "linear" or linear[0].mean_distance < CLEARLY_LINEAR * annular[0].mean_distance:
         return "linear", linear
     return "annular", annular

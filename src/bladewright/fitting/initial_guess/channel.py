@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 from scipy.spatial import cKDTree
 
@@ -169,6 +170,9 @@ CHANNEL = INITIAL_BLADES[1].channel
 """control points of the channel's curves"""
 LAW_COUNT = 4
 """control points of their laws along the span (design/first_guesses.md)"""
+CLEARLY_NEARER = 0.8
+"""ratio of the distances of slices below which another division of the outline is taken instead of the likeliest: half
+of it leaves two of 69 corners more than 0.1 chords off, 0.8 one, 1 four (design/first_guesses.md)."""
 BORDER_SHARE, BORDER_POINTS, CORNER_MARGIN = 0.06, 24, 0.12
 """share of the points (and at least `BORDER_POINTS`) beside a piece of the outline that show whether the sides meet
 there; they keep clear of its ends by `CORNER_MARGIN` of it (design/first_guesses.md)."""
@@ -210,19 +214,23 @@ def machine_coordinates(points: Reals, arrangement: str) -> Reals:
     return np.stack([x, np.sqrt(y**2 + z**2), wrapped], axis=-1)
 
 
-def ranked_channels(machine: Reals, *, revolved: bool) -> list[SlicedChannel]:
-    """The channel and slices for each likely choice of walls and edges, those nearest to the points first."""
-    found = []
-    for pieces in corner_sets(alpha_boundary(machine[:, :2])):
+def ranked_channels(
+    machine: Reals, rows: NDArray[np.intp] | slice = slice(None), *, revolved: bool
+) -> list[SlicedChannel]:
+    """The channel and slices for each likely choice of walls and edges, the likeliest first.
+
+    All points show the outline, and which of its pieces are walls; `rows` of them the slices. The first choice stands
+    unless slices of another are clearly nearer to the points.
+    """
+    found: list[tuple[float, SlicedChannel]] = []
+    for number, pieces in enumerate(corner_sets(alpha_boundary(machine[:, :2]))):
         for turn in pairings(machine, pieces, revolved=revolved):
             named = _named(pieces, turn)
-            sliced = sliced_channel(machine, named, revolved=revolved)
+            sliced = sliced_channel(machine[rows], named, revolved=revolved)
             if _radial(named) and _rounder_at_end(sliced.slices):
-                sliced = sliced_channel(machine, _reversed(named), revolved=revolved)
-            found.append(sliced)
-        if min(each.mean_distance for each in found) < CLEAR_DISTANCE:
-            break
-    return sorted(found, key=lambda each: each.mean_distance)
+                sliced = sliced_channel(machine[rows], _reversed(named), revolved=revolved)
+            found.append((sliced.mean_distance / (CLEARLY_NEARER if number else 1.0), sliced))
+    return [sliced for _, sliced in sorted(found, key=lambda each: each[0])]
 
 
 def sliced_channel(machine: Reals, named: dict[str, Reals], *, revolved: bool) -> SlicedChannel:
