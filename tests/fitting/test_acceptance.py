@@ -68,6 +68,19 @@ def test_outliers_beside_each_other_are_a_shape_that_is_not_found(together):
     assert any("beside each other" in each for each in said) is together
 
 
+@pytest.mark.parametrize("inside", [True, False])
+def test_outliers_that_all_lie_inside_the_blade_are_a_shape_that_is_not_found(inside):
+    built, draw = STATOR.build(), np.random.default_rng(8)
+    places = draw.random((2, 2, 800))
+    points = np.concatenate([np.real(side(*place)) for side, place in zip(built.sides, places, strict=True)])
+    at, normals = (getattr(measured(points, built).footpoints, name) for name in ("points", "normals"))
+    moved = np.flatnonzero(np.abs(places[:, 0].ravel() - 0.5) < 0.3)[::30]
+    ways = -np.ones(len(moved)) if inside else draw.choice([-1.0, 1.0], len(moved))
+    points[moved] = at[moved] + 0.01 * built.chord * ways[:, None] * normals[moved]
+    said = said_of(points, STATOR, MatchTarget())
+    assert any("inside the blade" in each for each in said) is inside
+
+
 def test_points_of_a_solid_on_its_end_faces_are_said_to_be_there():
     built = STATOR.build()
     random = np.random.default_rng(4)

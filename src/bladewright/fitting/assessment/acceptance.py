@@ -6,8 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
+from scipy.stats import binomtest
 
 from bladewright.fitting.assessment.coverage import (
+    CONFIDENCE,
     EDGE_PARAMETERS,
     NORMAL_95,
     bare_at_ends,
@@ -95,6 +97,12 @@ def failures_of(
             "off the blade: the shape is not found there, or they belong to something else; leave them out, or give a "
             "start"
         )
+    inside, deepest = _inside(measurement)
+    if target.open and binomtest(inside, max(off, 1), alternative="greater").pvalue < 1.0 - CONFIDENCE:
+        failures.append(
+            f"{inside} of {off} outliers lie inside the blade, up to {with_unit(match.design, deepest, 2)} from its "
+            "sides: is the shape not found there, or the blade worn? Leave them out, give a start, or state a tolerance"
+        )
     worst = int(np.flatnonzero(inliers)[np.argmax(distances[inliers])])
     if target.tolerance is not None and distances[worst] > target.tolerance:
         failures.append(
@@ -130,6 +138,16 @@ def _outlying_group(measurement: Measurement) -> tuple[int, float]:
     labels = groups(outlier[index], (np.cumsum(outlier) - 1)[index])
     largest = rows[labels == np.argmax(np.bincount(labels))]
     return len(largest), float(np.max(measurement.distances[largest]))
+
+
+def _inside(measurement: Measurement) -> tuple[int, float]:
+    """Number of outliers inside the sides, and how far the deepest is [m].
+
+    Points off a surface lie to either side of it, or in front of it; behind it only where it is not the true one. So
+    many of them come by chance by the sign test (Dixon and Mood 1946).
+    """
+    behind = ~measurement.inliers & ~measurement.faced & (measurement.set_aside == "") & (measurement.deviations < 0.0)
+    return int(np.count_nonzero(behind)), float(np.max(measurement.distances[behind], initial=0.0))
 
 
 def _not_shown(statistics: ParameterEstimates, match: Match) -> list[str]:
