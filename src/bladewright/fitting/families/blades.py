@@ -22,7 +22,13 @@ from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import Match, Task, searched
-from bladewright.fitting.model_selection.selection import GUESS_NOISE, selected_match
+from bladewright.fitting.model_selection.selection import (
+    GUESS_NOISE,
+    QUICK_POINTS,
+    SEVERAL_POINTS,
+    THOROUGH_POINTS,
+    selected_match,
+)
 from bladewright.fitting.model_selection.structure import INITIAL_BLADES, structure_of
 from bladewright.fitting.models.blunt_edges import sides_of
 from bladewright.fitting.models.sectioned import infeasibility
@@ -31,8 +37,6 @@ from bladewright.section.checks import UNITS
 from bladewright.section.laws import Span, law_points
 from bladewright.section.unified_limits import RADII
 
-QUICK_POINTS, THOROUGH_POINTS = 1000, 12_000
-"""points of the search for the closed blade, and of what shows it (`THOROUGH_POINTS`)"""
 QUICK_ROUNDS = 4
 """rounds of the search for the closed blade from which the family's first design is taken"""
 SMALLER_RADII = 0.8
@@ -101,7 +105,7 @@ def _closed_blade(task: Task, header: DesignHeader, like: Any) -> Blade:
 
 def _band(task: Task, closed: Blade, v: float) -> Reals:
     """Points (n, 2) of the section at v of a closed blade, with the deviations of the points of the cloud beside it."""
-    few = task.thinned(QUICK_POINTS * 4)
+    few = task.thinned(SEVERAL_POINTS)
     feet = nearest_footpoints(few.points, sides_of(closed))
     section = closed.section(v)
     found = []

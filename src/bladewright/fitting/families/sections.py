@@ -20,6 +20,7 @@ from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, has_systematic_misfit, searched
 from bladewright.fitting.model_selection.selection import (
     NEAR,
+    QUICK_POINTS,
     determined,
     selected_match,
 )
@@ -40,8 +41,6 @@ OUTLINE_COUNTS = (24, 32, 44)
 OUTLINE_DEVIATION = 1e-4
 """largest distance with which a contour gets no further points where nothing is asked for, of the chord: a fifth of
 what acceptance trusts"""
-OUTLINE_POINTS = 1000
-"""points by which contours are searched"""
 BESIDE, BY_CHANCE = 16, 1e-3
 """points beside each other by which a misfit is told that stays with an edge, which seldom has more, and probability
 that noise alone looks like one (`BY_CHANCE`), by the chi-squared test (Pearson 1900) [-]"""
@@ -154,7 +153,7 @@ def _through_points(
     would leave its points out.
     """
     inliers = task.thinned(len(profile.rows)).part(np.flatnonzero(profile.rows))
-    some, found = replace(inliers.thinned(OUTLINE_POINTS), allow_outliers=False), None
+    some, found = replace(inliers.thinned(QUICK_POINTS), allow_outliers=False), None
     starts = {_trailing_edge(each.design): each for each in reversed(tried)}
     # one coordinate is free of each point but two, and four numbers place the section
     for count in OUTLINE_COUNTS if target.parameters is None else (target.parameters - 2,):
