@@ -6,10 +6,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from bladewright.errors import FitError
+from bladewright.fitting import free_parameters
 from bladewright.fitting.families import blades
-from bladewright.fitting.families.first_parts import suction_pressure_parts
 from bladewright.fitting.families.flow_path import ChannelCurves
 from bladewright.fitting.families.kinds import FAMILIES
 from bladewright.fitting.families.laws import counts_of, part_along_span, with_mean_laws
@@ -21,6 +22,7 @@ from bladewright.fitting.matching.search import Task
 from bladewright.fitting.models.blunt_edges import sides_of
 from bladewright.fitting.models.model import model_of
 from bladewright.section.laws import Span
+from bladewright.section.profiles.naca4 import Naca4
 from bladewright.section.wedge_diffuser import WedgeDiffuser, WedgeDiffuserSection
 from machines.sectioned import BLUNT, COMPRESSOR, DESIGNS, DIFFUSER
 
@@ -151,10 +153,31 @@ def test_where_radii_differ_the_machine_may_be_turned_until_the_leading_edge_sta
     assert planes(1.01) == planes(1.5, "linear") == [("m'-theta", 0.0)]
 
 
-def test_kinds_of_parts_are_told_apart_by_what_no_number_of_them_is():
-    part = DESIGNS["compressor-rotor"].section
-    angle = part.changed("metal_angle_in", 12.0)
-    assert blades._kind_of(part) == blades._kind_of(angle)
-    first, second = (suction_pressure_parts(section_shape(VANE.build().section(0.5)), None)[i] for i in (0, -1))
-    assert {first.edges, second.edges} == {"C1", "C2"}
-    assert blades._kind_of(first) != blades._kind_of(second)
+def test_parts_along_the_span_are_the_searched_one_where_shapes_are_alike_and_turn_as_they_do():
+    wedge = WedgeDiffuser(stagger_angle=30.0, leading_edge_radius=0.01, trailing_edge_radius=0.02, wedge_angle=9.0)
+    shape = section_shape(WedgeDiffuserSection(name="vane", length_unit="mm", chord=50.0, section=wedge).build())
+    searched = wedge.changed({"wedge_angle": 9.5, "leading_edge_radius": 0.012})
+    shapes = [
+        replace(shape, stagger=shape.stagger + np.radians(turn)) for turn in (-2.0, -1.0, -0.5, 0.0, 1.0, 2.0, 4.0)
+    ]
+    match = SimpleNamespace(design=SimpleNamespace(section=searched))
+    parts = blades._along_span(FAMILIES["wedge-diffuser"], shapes, match)
+    assert parts[3].parameters() == pytest.approx(searched.parameters())
+    assert [each.stagger_angle for each in parts] == pytest.approx([28.0, 29.0, 29.5, 30.0, 31.0, 32.0, 34.0])
+    assert {each.wedge_angle for each in parts} == {9.5}
+
+
+def test_contours_of_a_profile_that_tapers_keep_its_kind_of_edge_and_its_shape():
+    profile = Naca4(stagger_angle=(30.0, 50.0), thickness=(0.12, 0.08), camber=0.04, camber_position=0.4)
+    shapes = blades._shapes_of(profile)
+    parts = [FAMILIES["profile"].through_points(each, blades.CONTOUR_POINTS) for each in shapes]
+    contours = part_along_span(parts, blades.START_SPANS, dict.fromkeys(counts_of(parts[0]), blades.LAW_COUNT))
+    span, s = Span(np.linspace(0.0, 1.0, 5)), np.linspace(0.0, 1.0, 8001)
+    own, given = (each.outline(span) for each in (contours, profile))
+    assert own.trailing_edge.kind == "sharp"
+    for side, true in zip(own.points(s), given.points(s), strict=True):
+        off = [cKDTree(np.real(line)).query(np.real(points))[0].max() for points, line in zip(side, true, strict=True)]
+        # a start for a search: a third of the nose's radius
+        assert max(off) < 5e-3
+    # one coordinate of each point slides it along the contour, and both of the two ends
+    assert len(free_parameters._along_contour(contours)) == blades.LAW_COUNT * (blades.CONTOUR_POINTS + 2)

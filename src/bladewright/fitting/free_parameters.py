@@ -13,7 +13,7 @@ from bladewright.derivatives.patterns import Patterns, chosen, matching
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.numerics.elementary import Array
-from bladewright.section.laws import is_list, law_points
+from bladewright.section.laws import law_points
 from bladewright.section.profiles.points import PointsProfile
 from bladewright.section.segmented.part import Segmented
 
@@ -107,16 +107,15 @@ def _across_walls(design: SectionedBlade) -> frozenset[str]:
 
 
 def _along_contour(section: PointsProfile) -> set[str]:
-    """Paths of coordinates that do not change a contour through points, or hardly."""
-    if any(is_list(law) for law in (*section.abscissas, *section.ordinates)):
-        return set()
+    """Paths of coordinates that do not change a contour through points, or hardly; of laws as their means say."""
     x, y = (
-        np.array([float(np.real(*law_points(each))) for each in law]) for law in (section.abscissas, section.ordinates)
+        np.array([float(np.mean(np.real(law_points(each)))) for each in law])
+        for law in (section.abscissas, section.ordinates)
     )
     along_x, along_y = ((np.roll(each, -1) - np.roll(each, 1)) ** 2 for each in (x, y))
-    found = {f"section.{'abscissas' if along_x[i] >= along_y[i] else 'ordinates'}[{i}]" for i in range(len(x))}
-    ends = int(np.argmin(x)), int(np.argmax(x))
-    return found | {f"section.{name}[{i}]" for name in ("abscissas", "ordinates") for i in ends}
+    held = {f"{'abscissas' if along_x[i] >= along_y[i] else 'ordinates'}[{i}]" for i in range(len(x))}
+    held |= {f"{name}[{i}]" for name in ("abscissas", "ordinates") for i in (int(np.argmin(x)), int(np.argmax(x)))}
+    return {f"section.{path}" for path in section.parameters() if path.startswith(tuple(held))}
 
 
 def _largest_curvature(values: dict[str, float]) -> list[str]:

@@ -41,6 +41,9 @@ LARGEST_BEND = 0.4
 (Transtrum and Sethna 2012)."""
 ACTIVE_SET_CHANGES = 20
 """changes of the set of active inequalities in one step at most; a step that needs more is given up."""
+LARGEST_EASING = 1.0 / 5.0
+"""ratio by which a good step eases the damping at most: by a tenth every second step of a rich match is refused, by a
+third damping lags behind (design/matching.md)"""
 MIN_REDUCTION = 1e-6
 """predicted relative reduction of the cost below which a step is not worth its evaluation."""
 
@@ -137,7 +140,7 @@ def constrained_minimum(
             following = problem.derivatives(trial) if gain > 1e-3 and done < steps and not ends else None
             if gain > 1e-3 and fresh is not None and (ends or done >= steps or following is not None):
                 z, (residuals, constrained), linearised = trial, fresh, following
-                damping *= max(1.0 / 10.0, 1.0 - (2.0 * min(gain, 1.0) - 1.0) ** 3)
+                damping *= max(LARGEST_EASING, 1.0 - (2.0 * min(gain, 1.0) - 1.0) ** 3)
                 damping, growth, moved = max(damping, 1e-16), 2.0, True
                 if ends:
                     return ConstrainedMinimum(z=z, converged=True, damping=damping)

@@ -1,7 +1,6 @@
 """From points in space to a blade from sections of a family."""
 
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -9,18 +8,18 @@ import numpy as np
 
 from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.blade.native.blade import Blade
-from bladewright.designs import Design, Part
+from bladewright.designs import Design, unit_at
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import MatchTarget
 from bladewright.fitting.families.flow_path import ChannelCurves
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
 from bladewright.fitting.families.laws import counts_of, nearest_law, part_along_span, with_mean_laws, with_stations_of
-from bladewright.fitting.families.section_shape import SectionShape, section_shape, unrolled
-from bladewright.fitting.families.sections import CONSIDERED, PROMISING, compared
+from bladewright.fitting.families.section_shape import PLACES, SectionShape, section_shape, unrolled
+from bladewright.fitting.families.sections import CONSIDERED, PROMISING, compared, criterion, is_far
 from bladewright.fitting.free_parameters import EDGES, FreeParameters, gauge_parameters
 from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.matching.footpoints import nearest_footpoints
-from bladewright.fitting.matching.scales import check_bounds
+from bladewright.fitting.matching.scales import check_bounds, part_range
 from bladewright.fitting.matching.search import Match, Task, searched
 from bladewright.fitting.model_selection.selection import (
     GUESS_NOISE,
@@ -52,6 +51,8 @@ FEASIBILITY_SPANS = Span(np.linspace(0.0, 1.0, 13))
 """places along the span at which laws must leave sections a shape"""
 LAW_COUNT = 3
 """control points of each law along the span where no structure is given"""
+CONTOUR_POINTS = 32
+"""points of contours along the chord where no profile is near enough (design/matching.md)"""
 CONFORMAL, UNROLLED = "m'-theta", "m-r*theta"
 """planes of stream surfaces in which sections are tried"""
 SAME_RADIUS = 1.02
@@ -83,7 +84,37 @@ def matched_blade(
     check_bounds(first, task.free(first), task.bounds)
     structure = None if like is None else structure_of(like)
     found, reason = selected_match(task, first, target, like=structure, guessed=first is not start)
+    if kind.through_points is not None and own and is_far(found, target):
+        outlined = _through_points(task, kind, found, target)
+        found, reason = min(filter(None, ((found, reason), outlined)), key=lambda each: criterion(each[0], target))
     return found, "; ".join(filter(None, (reason, "" if own else WALLS_HELD_NOTE)))
+
+
+def _through_points(task: Task, kind: FitFamily, match: Match, target: MatchTarget) -> tuple[Match, str] | None:
+    """The match by contours that begin as the sections of another match, and why it ends where no target is met.
+
+    None where it has no shape. Outliers are those of the other match: contours that have not found an edge yet would
+    leave its points out.
+    """
+    assert kind.through_points is not None  # noqa: S101 - asked of the family that has them
+    design: Any = match.design
+    parts = [kind.through_points(each, CONTOUR_POINTS) for each in _shapes_of(design.section)]
+    first = replace(design, section=_laws(parts, dict.fromkeys(counts_of(parts[MIDDLE]), LAW_COUNT)))
+    inliers = task.thinned(len(match.rows)).part(np.flatnonzero(match.rows))
+    try:
+        return selected_match(replace(inliers, allow_outliers=False), first, target, like=None, guessed=True)
+    except (DesignError, FitError):
+        return None
+
+
+def _shapes_of(part: Any) -> list[SectionShape]:
+    """The shapes of a part's sections at START_SPANS, apart from where they stand."""
+    span = Span(START_SPANS)
+    upper, lower = (np.real(side) for side in part.outline(span).points(PLACES))
+    return [
+        SectionShape(chord=1.0, stagger=float(turn), start=np.zeros(2), upper=u, lower=v, edge_radii=(0.0, 0.0))
+        for turn, u, v in zip(np.broadcast_to(np.real(part.stagger(span)), len(START_SPANS)), upper, lower, strict=True)
+    ]
 
 
 def _closed_blade(task: Task, header: DesignHeader, like: Any) -> Blade:
@@ -143,46 +174,34 @@ def _first(task: Task, closed: Blade, kind: FitFamily, like: Any, header: Design
     found = replace(found, backwards=_backwards(found, kind, like, middle))
     band = _band(task, closed, float(START_SPANS[MIDDLE]))
     part = None if like is None else with_mean_laws(like.section)
-    tried, refusal = list[tuple[float, _Frame, Match]](), None
+    tried, refusal = list[tuple[Match, _Frame]](), FitError("no plane of sections was tried")
     for plane, turn in _planes(task, found, like, middle):
         shapes = [section_shape(each, unroll=plane == UNROLLED, turn=turn) for each in built]
         beside = unrolled(built[MIDDLE], band, turn) if plane == UNROLLED else band
         if found.backwards:
             shapes, beside = [each.reversed() for each in shapes[::-1]], beside * [-1.0, 1.0]
-        frame = _Frame(plane=plane, turn=turn, shapes=shapes)
         try:
-            matches = _matched(kind, shapes[MIDDLE], beside, kind.first_parts(shapes[MIDDLE], part))
+            match = _matched(kind, shapes[MIDDLE], beside, kind.first_parts(shapes[MIDDLE], part))
+            tried.append((match, _Frame(plane=plane, turn=turn, shapes=shapes)))
         except FitError as error:
             refusal = error
-            continue
-        tried.append((matches[0].rms, frame, matches[0]))
-    if not tried:
-        raise FitError(str(refusal)) from refusal
-    tried.sort(key=lambda each: each[0])
-    few, blades = task.thinned(QUICK_POINTS), list[tuple[Match, _Frame, list[Any]]]()
-    for rms, frame, chosen in tried:
-        if rms > PROMISING * tried[0][0]:
+    tried.sort(key=lambda each: each[0].rms)
+    few, blades = task.thinned(QUICK_POINTS), list[tuple[Match, _Frame]]()
+    for chosen, frame in tried:
+        if chosen.rms > PROMISING * tried[0][0].rms:
             break
-        if any(frame.plane == each.plane for _, each, _ in blades):
+        if any(frame.plane == each.plane for _, each in blades):
             continue
-        halves = (_along_span(kind, way, chosen) for way in (frame.shapes[MIDDLE::-1], frame.shapes[MIDDLE:]))
-        first, last = ([_part_of(each) for each in half] for half in halves)
-        parts = [*first[:0:-1], *last]
-        counts = dict.fromkeys(counts_of(last[0]), LAW_COUNT) if like is None else counts_of(like.section)
+        parts = _along_span(kind, frame.shapes, chosen)
+        counts = dict.fromkeys(counts_of(parts[MIDDLE]), LAW_COUNT) if like is None else counts_of(like.section)
         design = _blade_of(found, frame, kind.blade, _laws(parts, counts), like, header)
         try:
-            blades.append((compared(few.turned(frame.turn), iter([design]))[0], frame, parts))
+            blades.append((compared(few.turned(frame.turn), iter([design]))[0], frame))
         except FitError as error:
             refusal = error
     if not blades:
-        raise FitError(str(refusal)) from refusal
-    best, frame, parts = min(blades, key=lambda each: each[0].rms)
-    if like is None:
-        # numbers of a section that make up for each other run wild along the span where nothing holds them
-        constant = _laws([parts[MIDDLE]] * len(parts), dict.fromkeys(counts_of(parts[MIDDLE]), 1))
-        steady = _blade_of(found, frame, kind.blade, constant, like, header)
-        with suppress(FitError):
-            best = min(best, compared(few.turned(frame.turn), iter([steady]))[0], key=lambda each: each.rms)
+        raise refusal
+    best, frame = min(blades, key=lambda each: each[0].rms)
     nearest: Any = best.design
     if not frame.turn:
         return 0.0, nearest
@@ -284,29 +303,31 @@ def _planes(task: Task, found: ChannelCurves, like: Any, middle: SectionShape) -
     return own if task.bounds else [*own, (UNROLLED, turn)]
 
 
-def _along_span(kind: FitFamily, shapes: list[SectionShape], first: Match) -> list[Match]:
-    """Matches of sections in a row, the first known: each begins as the one before, or as its shape says.
+def _along_span(kind: FitFamily, shapes: Sequence[SectionShape], middle: Match) -> list[Any]:
+    """Parts at places along the span: that of the middle, which was searched, changed as its shapes say.
 
-    Where none of these has a shape, the one before stands.
+    Angles change by what the first parts of the shapes there and in the middle differ, and lengths by their ratio.
     """
-    found = [first]
-    for shape in shapes[1:]:
-        before = _part_of(found[-1])
-        try:
-            found.append(_matched(kind, shape, shape.outline, [before, *kind.first_parts(shape, before)])[0])
-        except FitError:
-            found.append(found[-1])
-    return found
+    design: Any = middle.design
+    part: Any = design.section
+    firsts = [kind.first_parts(shape, part)[0].parameters() for shape in shapes]
+
+    def changed(path: str, value: float, first: float, there: float) -> float:
+        unit = unit_at(part, path)
+        by_ratio = unit != "deg" and min(value, first, there) > 0.0
+        allowed = part_range(path, unit, value, abs(value))
+        found = value * there / first if by_ratio else value + there - first
+        return float(np.clip(found, min(value, allowed.low), max(value, allowed.high)))
+
+    values = part.parameters()
+    return [
+        part.changed({path: changed(path, value, firsts[MIDDLE][path], there[path]) for path, value in values.items()})
+        for there in firsts
+    ]
 
 
-def _part_of(match: Match) -> Any:
-    """The part of a matched section."""
-    design: Any = match.design
-    return design.section
-
-
-def _matched(kind: FitFamily, shape: SectionShape, points: Reals, parts: Sequence[Any]) -> list[Match]:
-    """The best matches of points (n, 2) of a section from several parts, one of each kind, nearest first."""
+def _matched(kind: FitFamily, shape: SectionShape, points: Reals, parts: Sequence[Any]) -> Match:
+    """The best match of points (n, 2) of a section from several parts."""
     task = Task(points=points, weights=np.ones(len(points)), free=_section_parameters, bounds={})
     x, y = shape.start
     designs = (
@@ -315,17 +336,10 @@ def _matched(kind: FitFamily, shape: SectionShape, points: Reals, parts: Sequenc
         )
         for part in parts
     )
-    best = {_kind_of(_part_of(each)): each for each in reversed(compared(task, designs))}
-    nearest = sorted(best.values(), key=lambda each: each.rms)[:CONSIDERED]
-    found = [searched(task, each.design, rounds=QUICK_ROUNDS, fading=True) for each in nearest]
-    return sorted(found, key=lambda each: each.rms)
-
-
-def _kind_of(part: Part) -> tuple[Any, ...]:
-    """What tells kinds of a part apart, which no search changes: classes, names, and what is not given."""
-    values = vars(part).values()
-    named = (each for each in values if each is None or isinstance(each, str | Part))
-    return type(part), *(_kind_of(each) if isinstance(each, Part) else each for each in named)
+    nearest = compared(task, designs)[:CONSIDERED]
+    return min(
+        (searched(task, each.design, rounds=QUICK_ROUNDS, fading=True) for each in nearest), key=lambda each: each.rms
+    )
 
 
 def _section_parameters(design: Design) -> tuple[str, ...]:

@@ -320,7 +320,7 @@ def through_points(shape: SectionShape, count: int) -> PointsProfile:
 
     They are as dense as the outline turns, and as it is long, in equal parts. A blunt edge has a point on each corner.
     """
-    blunt = bool(np.any(shape.upper[-1] != shape.lower[-1]))
+    blunt = not np.allclose(shape.upper[-1], shape.lower[-1])
     around = np.concatenate([shape.upper[::-1], shape.lower[1:]])
     along = np.diff(around, axis=0)
     steps, heading = np.sqrt(np.sum(along**2, axis=-1)), np.arctan2(along[:, 1], along[:, 0])

@@ -79,7 +79,7 @@ def matched_section(
     structure = None if like is None else structure_of(like)
     promising = [each.design for each in tried[:CONSIDERED] if each.rms < PROMISING * tried[0].rms]
     found, reason = nearest(task, promising, target, structure)
-    if kind.through_points is not None and like is None and _is_far(found, target):
+    if kind.through_points is not None and like is None and is_far(found, target):
         outline, note = _through_points(task, kind, tried, header, target, found)
         if outline is not None and criterion(outline, target) < criterion(found, target):
             found, reason = outline, note
@@ -136,7 +136,7 @@ def _has_misfit(match: Match) -> bool:
     return has_systematic_misfit(match) or _worst_neighbourhood(match) > allowed * match.noise_estimate.noise**2
 
 
-def _is_far(match: Match, target: MatchTarget, open_limit: float = NEAR_EVERYWHERE) -> bool:
+def is_far(match: Match, target: MatchTarget, open_limit: float = NEAR_EVERYWHERE) -> bool:
     """Whether a match is not what is asked for; `open_limit` is the largest distance where nothing is, of the chord."""
     limit = open_limit * match.model.chord if target.tolerance is None else target.tolerance
     short = target.parameters is not None and len(match.problem.paths) < target.parameters
@@ -164,7 +164,7 @@ def _through_points(
         # a round edge may need more points to be none of several corners
         starts = {edge: starts[edge] if each is None else each for edge, each in fresh.items() if each in (None, best)}
         found = best if found is None or _worst_neighbourhood(best) < _worst_neighbourhood(found) else found
-        if not _is_far(found, target, OUTLINE_DEVIATION):
+        if not is_far(found, target, OUTLINE_DEVIATION):
             break
     return determined(some, found) if found is not None and target.open else (found, "")
 

@@ -245,13 +245,15 @@ def searched(
     rounds: int = MOST_ROUNDS,
     noise: float | None = None,
     min_reduction: float = MIN_REDUCTION,
-    enough: float = EXACT_MISFIT,
+    enough: Callable[["Match"], bool] = lambda found: found.misfit < EXACT_MISFIT,
+    settled: float = SETTLED_RATIO,
     fading: bool = False,
 ) -> Match:
     """The design nearest to the cloud that a search from `start` finds, with the structure of `start`.
 
     `noise` is the first round's, of the chord; None takes the misfit of the start. `min_reduction` is the relative
-    reduction of the cost that a step must predict, `enough` the misfit, of the chord, below which the search ends.
+    reduction of the cost that a step must predict. The search ends after a round that is `enough`, or that leaves more
+    than the share `settled` of the misfit.
     As long as the misfit is systematic, the regularisation does not rise, and falls where it is `fading`.
     Raises FitError where the start has no shape, and KeyboardInterrupt after it has noted the best design of a round
     that was interrupted.
@@ -260,7 +262,7 @@ def searched(
     task.best_so_far.note(found)
     for number in range(rounds):
         before = found.misfit
-        if number and before < enough:
+        if number and enough(found):
             break
         try:
             prepared = found if number == 0 else _prepared_round(task, start, found.design, noise, found)
@@ -272,7 +274,7 @@ def searched(
         rms = f"{1e3 * found.rms * found.model.chord:.3g} mm rms, {1e3 * found.maximum:.3g} mm at most"
         task.progress(f"{len(found.problem.paths)} parameters, {rms}")
         ratio = found.misfit / before
-        rounds_without_gain = rounds_without_gain + 1 if ratio**2 > min(SETTLED_RATIO**2, 1.0 - min_reduction) else 0
+        rounds_without_gain = rounds_without_gain + 1 if ratio**2 > min(settled**2, 1.0 - min_reduction) else 0
         if number and rounds_without_gain and (found.converged or rounds_without_gain > 1):
             break
         last = found.rms if noise is None else noise

@@ -6,7 +6,6 @@ is predicted to keep the aim with the fewest parameters is searched. The aim is 
 distance; where nothing is asked, the cloud's noise (Morozov 1966), or a distance that the rich match keeps.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
@@ -99,8 +98,7 @@ def selected_match(
     if target.open and found.maximum < NEAR * found.model.chord:
         rich = found
     else:
-        enough = _near_enough if target.open else partial(selection.holds, tolerance=target.tolerance or np.inf)
-        rich = selection.rich(found, enough, slim=not target.open, sampled=target.parameters is None)
+        rich = selection.rich(found, target, sampled=target.parameters is None)
     if len(rich.rows) < len(several.points):
         # no richer one has a shape, or none is needed: the first match, of few points, stands
         rich = evaluated(several, rich.design, noise=rich.rms)
@@ -157,7 +155,7 @@ def _of_structure(several: Task, many: Task, found: Match, structure: Structure,
         tried = [found] if structure_of(found.design) == structure else []
         starts = [found] if not tried else []
         if not tried or has_systematic_misfit(found):
-            starts.append(selection.rich(found, lambda _: True, slim=True))
+            starts.append(selection.rich(found, MatchTarget(structured=True)))
         for start in starts:
             try:
                 tried.append(searched(several, reshaped(start.design, structure), noise=GUESS_NOISE))
@@ -195,6 +193,9 @@ exact, and else. They are parts of what is asked of the matches themselves, as p
 TRIED_SHARES = (1.0, 0.75, 0.5, 0.25, 0.0)
 """which of the structures that are predicted to do are searched, from that of fewest parameters, until one does
 (design/matching_constants.md)"""
+SETTLED_RICH = 0.9
+"""ratio of the misfits of two rounds above which the search of a rich structure has settled: one that is still on its
+way is wider than what it leaves needs (design/matching.md)."""
 RICHER_GAIN = 0.6
 """ratio of the misfits of two rich structures above which a richer one is of no use: a third as many control points
 again bring a cubic spline nearer by (3/4)^4, a third, half as many by a fifth (de Boor 1978, chapter 12)."""
@@ -218,23 +219,35 @@ class _Selection:
         found = model.prediction(model.counts)
         return found is not None and reweighted_prediction(model, found, relative).largest <= PREDICTED * relative
 
-    def rich(self, match: Match, enough: Callable[[Match], bool], *, slim: bool, sampled: bool = False) -> Match:
+    def rich(self, match: Match, target: MatchTarget, *, sampled: bool = False) -> Match:
         """The match of a rich structure, and of ever richer ones until one is near enough or comes hardly nearer.
 
-        Where it is to be `sampled`, the first has no more control points along the chord than its samples determine. In
-        space, where points are exact or it is to be `slim`, a structure loses what it does not need before it grows.
+        One is enough where a structure or a number of parameters is asked for. Where it is to be `sampled`, the first
+        has no more control points along the chord than its samples determine. In space, where points are exact or
+        something is asked, a structure loses what it does not need before it grows.
         """
-        found, rounds = match, QUICK_ROUNDS + 1
+        found, near = match, partial(_is_near, tolerance=target.tolerance)
+        least = NEAR * match.model.chord if target.tolerance is None else target.tolerance
         shown = len(self.task.points), rows_shown(match.state.footpoints.v[match.rows])
-        while found is match or (has_systematic_misfit(found) and not enough(found)):
+        while found is match or (
+            has_systematic_misfit(found)
+            and not near(found)
+            and (target.open or (target.tolerance is not None and not self.holds(found, target.tolerance)))
+        ):
             try:
-                slim = self.task.dimension == 3 and (slim or is_exact(found))
+                slim = self.task.dimension == 3 and (not target.open or is_exact(found))
                 about = self._without_surplus(found) if slim and found is not match else found.design
                 first = partial(rich_structure, sampled=sampled)
                 widened = first if found is match else partial(wider_structure, slim=slim)
                 design = widened_where_feasible(about, widened(about, self.task.free(about), *shown))
                 richer = searched(
-                    self.task, design, noise=found.rms, rounds=rounds, min_reduction=ROUGH_REDUCTION, fading=True
+                    self.task,
+                    design,
+                    noise=found.rms,
+                    min_reduction=ROUGH_REDUCTION,
+                    enough=lambda each: each.maximum <= least,
+                    settled=SETTLED_RICH,
+                    fading=True,
                 )
             except (DesignError, FitError):
                 break
@@ -283,7 +296,7 @@ class _Selection:
         # what the rich match leaves is the noise, where its neighbours share none of it (Morozov 1966)
         noise = (candidates[0].deviation if candidates else 0.0) * (1.0 + NOISE_QUANTILE / np.sqrt(2.0 * model.points))
         nearest = NEAR_RICH * min((each.largest for each in candidates), default=0.0)
-        aim = max(NEAR if nearest <= EXACT else ENOUGH, nearest)
+        aim = max(NEAR if is_exact(rich) or nearest <= EXACT else ENOUGH, nearest)
         near = max(trusted_distance(rich), NEAR_RICH * largest_of(rich, rich))
         systematic = has_systematic_misfit(rich)
         chosen = [each for each in candidates if (each.largest <= aim if systematic else each.deviation <= noise)]
@@ -390,9 +403,10 @@ class _Selection:
         return found
 
 
-def _near_enough(rich: Match) -> bool:
-    """Whether a rich match of which nothing is asked is near enough: exact points are met more nearly."""
-    return rich.maximum <= (NEAR if is_exact(rich) else NEAR_EVERYWHERE) * rich.model.chord
+def _is_near(rich: Match, tolerance: float | None) -> bool:
+    """Whether a rich match keeps a tolerance [m]; without one exact points are met more nearly."""
+    trusted = (NEAR if is_exact(rich) else NEAR_EVERYWHERE) * rich.model.chord
+    return rich.maximum <= (trusted if tolerance is None else tolerance)
 
 
 def _with_corners_held(task: Task) -> Task:
