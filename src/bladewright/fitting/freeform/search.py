@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from bladewright.numerics.least_squares import ConstrainedProblem, constrained_minimum
-from bladewright.numerics.robust import TUKEY_WIDTH, median_deviation, tukey_weights
+from bladewright.numerics.robust import median_deviation
 from bladewright.nurbs.basis import Reals
 
 STIFFNESSES = (1e-4, 1e-6, 1e-8, 1e-10)
@@ -30,7 +30,7 @@ OUTLYING_NOISE = 4.5
 """standard deviations of the noise from which a point is an outlier: one good point in 150,000 is dropped
 (design/freeform.md)"""
 REWEIGHTINGS = 5
-"""times that weights are found anew, of least distances and of Tukey's each (design/freeform.md)"""
+"""times that the weights of least distances are found anew (design/freeform.md)"""
 EXACT = 1e-10
 """distance, of the extent, that is rounding of the places (design/freeform.md)"""
 DETERMINED = 1e-6
@@ -274,15 +274,11 @@ def _softest(match: ShapeMatch[S]) -> float:
 def _without_outliers(match: ShapeMatch[S], stiffnesses: tuple[float, ...]) -> ShapeMatch[S]:
     """The match in which points further away than noise explains have no weight.
 
-    Iteratively reweighted least squares: of least distances, which leave no part of the points behind, then with
-    Tukey's weights (Holland and Welsch 1977).
+    They are told apart beside the shape of least distances, which leaves no part of the points behind, by iteratively
+    reweighted least squares (Holland and Welsch 1977).
     """
-    soft = STIFFNESSES[2]
-    for stiffness in (*stiffnesses[:2], *[soft] * REWEIGHTINGS):
+    for stiffness in (*stiffnesses[:2], *[STIFFNESSES[2]] * REWEIGHTINGS):
         spread = max(median_deviation(match.distances), EXACT)
         match = matched(replace(match, weights=spread / np.maximum(match.distances, spread)), stiffness, ROUGH)
-    for _ in range(REWEIGHTINGS):
-        spread = max(median_deviation(match.distances), EXACT)
-        match = matched(replace(match, weights=tukey_weights(match.distances, TUKEY_WIDTH * spread)), soft, ROUGH)
     inliers = match.distances <= max(OUTLYING_NOISE * median_deviation(match.distances), EXACT)
     return replace(match, weights=inliers.astype(np.float64))
