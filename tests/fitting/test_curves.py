@@ -154,7 +154,7 @@ def test_the_gradient_is_that_of_central_differences(weighted, closed, power):
         points=np.stack([np.cos(angle), np.sin(angle), 0.3 * rng.normal(size=6)], axis=-1),
         log_weights=0.2 * rng.normal(size=6) if weighted else np.zeros(6),
         weighted=weighted,
-        held="none" if closed else "corners",
+        boundary="free" if closed else "corners",
         closed=closed,
     )
     points = net.shape(rng.random(40)) + 0.02 * rng.normal(size=(40, 3))
@@ -181,7 +181,7 @@ def test_without_unknowns_a_match_is_a_projection():
         degrees=(1,),
         points=np.array([[0.0, 0.0], [3.0, 3.0]]),
         log_weights=np.zeros(2),
-        held="boundary",
+        boundary="fixed",
     )
     assert not net.free.any()
     found = matched(placed(net, np.array([[0.5, 0.6], [1.0, 1.5], [2.0, 2.2]])), 0.0)

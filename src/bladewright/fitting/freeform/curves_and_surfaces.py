@@ -14,14 +14,7 @@ from scipy.spatial.distance import cdist
 
 from bladewright.errors import FitError, GeometryError
 from bladewright.fitting.clouds.thinning import random_subset
-from bladewright.fitting.freeform.fits import (
-    FreeformFit,
-    Unit,
-    checked_ends,
-    checked_options,
-    checked_points,
-    figures_of,
-)
+from bladewright.fitting.freeform.fits import FreeformFit, Request
 from bladewright.fitting.freeform.net import DIRECTIONS, empty_net, matched_within, net_of
 from bladewright.numerics.elementary import cumulative_length
 from bladewright.nurbs.basis import Reals
@@ -38,12 +31,6 @@ MOST_CELLS = 1500
 (design/matching_constants.md)."""
 MARGIN = 0.05
 """length, of the domain, by which the surface is continued past its edges while it moves (design/freeform.md)"""
-HELD_BY_BOUNDARY: dict[str, Literal["none", "corners", "boundary"]] = {
-    "free": "none",
-    "corners": "corners",
-    "fixed": "boundary",
-}
-"""control points that a boundary holds"""
 
 
 @final
@@ -91,19 +78,17 @@ def fit_curve(
     point is linear in the control points; at its nearest place the distance does not change with the parameter) and
     Levenberg-Marquardt steps in place of finite differences.
     """
-    given = checked_points(points, "a curve")
-    unit = Unit(given)
-    pair, scaled = checked_ends(ends, unit), unit.scaled(given)
-    options = checked_options(
-        weights=weights, power=power, robust=robust, tolerance=tolerance, extent=unit.extent, progress=progress
+    request = Request(
+        "a curve", points, weights=weights, power=power, robust=robust, tolerance=tolerance, progress=progress
     )
+    pair, scaled = request.ends(ends), request.scaled(request.points)
     if start is None:
         shares = sites_along(scaled, closed=closed)
         own = None if knots is None else (knots,)
         net = empty_net((degree,), (control_points,), own, weights, scaled.shape[1], closed=closed)
         net = net.through(scaled, shares[:, None])
     else:
-        net = net_of(replace(start, control_points=unit.scaled(start.control_points)), closed=closed)
+        net = net_of(replace(start, control_points=request.scaled(start.control_points)), closed=closed)
         shares = net.nearest(scaled)[:, 0]
     if not closed:
         outermost = int(np.argmin(shares)), int(np.argmax(shares))
@@ -111,13 +96,12 @@ def fit_curve(
             net = replace(net, ends=outermost)
         else:
             first, last = scaled[list(outermost)] if pair is None else pair
-            net = replace(net, held="corners", points=np.stack([first, *net.points[1:-1], last]))
-    match, notes = matched_within(net, scaled, options, warm=start is not None)
+            net = replace(net, boundary="corners", points=np.stack([first, *net.points[1:-1], last]))
+    match, notes = matched_within(net, scaled, request, warm=start is not None)
     curve = match.shape.shape
     assert isinstance(curve, Curve)  # noqa: S101 - one direction
-    curve = replace(curve, control_points=unit.restored(curve.control_points))
-    figures = figures_of(match, unit.extent, *notes)
-    return CurveFit(curve=curve, u=match.parameters[:, 0], tolerance=tolerance, **figures)
+    curve = replace(curve, control_points=request.restored(curve.control_points))
+    return CurveFit(curve=curve, u=match.parameters[:, 0], **match.figures(request, *notes))
 
 
 def sites_along(points: Reals, *, closed: bool) -> Reals:
@@ -205,8 +189,10 @@ def fit_surface(
     Raises FitError where points are too few, not finite or on a line, or a choice is unknown. Source: as of
     `fit_curve`; the bending is that of a thin plate under tension (Franke 1985) in the surface's parameters.
     """
-    given = checked_points(points, "a surface", (3,))
-    if boundary not in HELD_BY_BOUNDARY:
+    request = Request(
+        "a surface", points, 3, weights=weights, power=power, robust=robust, tolerance=tolerance, progress=progress
+    )
+    if boundary not in ("free", "corners", "fixed"):
         raise FitError(f"boundary {boundary!r} is unknown: `free`, `corners`, or `fixed` at that of `start`")
     if boundary == "fixed" and start is None:
         raise FitError("a fixed boundary was asked for without `start`: give the surface whose boundary is to stay")
@@ -214,37 +200,33 @@ def fit_surface(
         raise FitError(
             "a surface has two degrees, two numbers of control points, and two arrays of knots: one for u and v"
         )
-    unit = Unit(given)
-    scaled = unit.scaled(given)
-    options = checked_options(
-        weights=weights, power=power, robust=robust, tolerance=tolerance, extent=unit.extent, progress=progress
-    )
+    scaled = request.scaled(request.points)
     if start is None:
         shares = _rectangle(scaled)
         net = empty_net(degrees, control_points, knots, weights, 3).through(scaled, shares)
         if boundary == "corners":
             corners = [np.argmin(np.sum((shares - corner) ** 2, axis=1)) for corner in np.ndindex(2, 2)]
-            net.points[~replace(net, held="corners").free] = scaled[corners]
+            net.points[~replace(net, boundary="corners").free] = scaled[corners]
     else:
-        net = net_of(replace(start, control_points=unit.scaled(start.control_points)))
+        net = net_of(replace(start, control_points=request.scaled(start.control_points)))
     low, high = net.domain
     if boundary == "free":
         # an edge that moves inwards past a point is a wall for the descent: hundreds of steps where a dozen are enough
         try:
             net = net_of(_over(net.shape, low - MARGIN * (high - low), high + MARGIN * (high - low)))
         except GeometryError:
-            options.report("weights that fall towards an edge would not stay positive past it")
-    net = replace(net, held=HELD_BY_BOUNDARY[boundary])
-    match, notes = matched_within(net, scaled, options, warm=start is not None)
+            request.report("weights that fall towards an edge would not stay positive past it")
+    net = replace(net, boundary=boundary)
+    match, notes = matched_within(net, scaled, request, warm=start is not None)
     surface, parameters = match.shape.shape, match.parameters
     if boundary == "free":
         first, last = np.min(parameters, axis=0), np.max(parameters, axis=0)
         surface = _over(surface, first, last)
         parameters = np.clip(low + (parameters - first) / (last - first) * (high - low), low, high)
     assert isinstance(surface, Surface)  # noqa: S101 - two directions
-    surface = replace(surface, control_points=unit.restored(surface.control_points))
+    surface = replace(surface, control_points=request.restored(surface.control_points))
     u, v = parameters.T
-    return SurfaceFit(surface=surface, u=u, v=v, tolerance=tolerance, **figures_of(match, unit.extent, *notes))
+    return SurfaceFit(surface=surface, u=u, v=v, **match.figures(request, *notes))
 
 
 def _over(surface: Curve | Surface, first: Reals, last: Reals) -> Surface:
@@ -268,11 +250,10 @@ def _rectangle(points: Reals) -> Reals:
         raise FitError(f"the {len(points)} points lie on a line: a surface needs points beside it")
     plane = points @ axes[:2].T
     hull = plane[ConvexHull(plane).vertices]
-    sides = np.roll(hull, -1, axis=0) - hull
-    angles = np.arctan2(sides[:, 1], sides[:, 0])
-    turns = np.moveaxis(np.array([[np.cos(angles), -np.sin(angles)], [np.sin(angles), np.cos(angles)]]), 2, 0)
-    turn = turns[np.argmin(np.prod(np.ptp(hull @ turns, axis=1), axis=1))]
-    turned = plane @ turn
+    along = np.roll(hull, -1, axis=0) - hull
+    along /= np.sqrt(np.sum(along**2, axis=1))[:, None]
+    turns = np.stack([along, along[:, ::-1] * [-1.0, 1.0]], axis=-1)
+    turned = plane @ turns[np.argmin(np.prod(np.ptp(hull @ turns, axis=1), axis=1))]
     size = np.ptp(turned, axis=0)
     shares = (turned - turned.min(axis=0)) / size
     return shares if size[0] >= size[1] else shares[:, ::-1]

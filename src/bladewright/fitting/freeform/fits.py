@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
 from typing import Any
 
@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bladewright.errors import FitError
-from bladewright.fitting.freeform.search import Options, S, ShapeMatch
 from bladewright.nurbs.basis import Reals
 
 
@@ -78,11 +77,66 @@ class FreeformFit:
         return self.converged and (self.tolerance is None or self.maximum <= self.tolerance)
 
 
-@dataclass(frozen=True)
-class Unit:
-    """The unit in which points (n, d) are fitted: about their mean, in their largest extent."""
+@dataclass(frozen=True, eq=False)
+class Request:
+    """What is asked of a fit to points (n, d); raises FitError where it cannot be met.
 
-    points: Reals
+    Fits work in the unit of the points: about their mean, in their largest extent.
+    """
+
+    what: str
+    """that is fitted, for messages"""
+    given: ArrayLike
+    """points, in their own unit"""
+    dimensions: int = 0
+    """of the points; 0 where any do"""
+    _: KW_ONLY
+    weights: object = "fixed"
+    power: float = 2.0
+    robust: bool = False
+    tolerance: float | None = None
+    """largest distance, in the unit of the points"""
+    progress: Callable[[str], None] | None = None
+    """is handed a few words on what is done"""
+
+    def __post_init__(self) -> None:
+        given, what = self.points, self.what
+        if given.ndim != 2 or given.shape[1] < 2 or self.dimensions not in (0, given.shape[1]):
+            raise FitError(
+                f"points of shape {given.shape} were given for {what}: give (n, d) with d = "
+                f"{self.dimensions or '2, 3 or more'} coordinates"
+            )
+        wrong = np.flatnonzero(~np.isfinite(given).all(axis=1))
+        if len(wrong):
+            raise FitError(
+                f"{len(wrong)} of {len(given)} points of {what} are not finite, the first in row {wrong[0]} "
+                f"({given[wrong[0]].tolist()}); leave these rows out"
+            )
+        if len(given) < 2 or not (np.ptp(given, axis=0) > 0.0).any():
+            raise FitError(f"{len(given)} points at one place were given for {what}: it needs different ones")
+        if isinstance(self.weights, str) and self.weights not in ("fixed", "free"):
+            raise FitError(f"weights {self.weights!r} are unknown: `fixed` (all one), `free`, or positive numbers")
+        if not 2.0 <= self.power <= 16.0:
+            raise FitError(
+                f"power {self.power} was asked for: 2 is least squares, higher ones up to 16 weigh large distances more"
+            )
+        if self.tolerance is not None and not self.tolerance > 0.0:
+            raise FitError(f"a tolerance of {self.tolerance} was asked for: it must be positive")
+
+    @cached_property
+    def points(self) -> Reals:
+        """(n, d) as numbers."""
+        return _numbers(self.given, f"the points of {self.what}")
+
+    @property
+    def weights_free(self) -> bool:
+        """Whether weights are unknown."""
+        return isinstance(self.weights, str) and self.weights == "free"
+
+    def report(self, words: str) -> None:
+        """Tell what is done, where that was asked for."""
+        if self.progress is not None:
+            self.progress(words)
 
     @cached_property
     def centre(self) -> Reals:
@@ -91,98 +145,32 @@ class Unit:
 
     @cached_property
     def extent(self) -> float:
-        """Largest extent along an axis."""
+        """Largest extent of the points along an axis."""
         return float(np.ptp(self.points, axis=0).max())
 
-    def scaled(self, points: ArrayLike) -> Reals:
+    def scaled(self, points: Reals) -> Reals:
         """Points (..., d) in extents about the centre."""
-        return np.asarray((np.asarray(points, dtype=np.float64) - self.centre) / self.extent)
+        return np.asarray((points - self.centre) / self.extent)
 
     def restored(self, points: Reals) -> Reals:
         """Points (..., d) in their own unit."""
         return points * self.extent + self.centre
 
-
-def figures_of(match: ShapeMatch[S], extent: float, *notes: str) -> dict[str, Any]:
-    """The figures of a fit."""
-    rank, unknowns = match.rank, len(match.singular_values)
-    open_note = (
-        f"the points determine {rank} of {unknowns} directions of the unknowns: the others bend the shape as little as "
-        "they can"
-    )
-    return {
-        "distances": match.distances * extent,
-        "inliers": match.inliers,
-        "iterations": match.evaluations,
-        "converged": match.converged,
-        "singular_values": match.singular_values,
-        "rank": rank,
-        "noise": match.noise * extent,
-        "notes": (*notes, open_note) if rank < unknowns else notes,
-    }
-
-
-def checked_options(
-    *,
-    weights: object,
-    power: float,
-    robust: bool,
-    tolerance: float | None,
-    extent: float,
-    progress: Callable[[str], None] | None,
-) -> Options:
-    """The options of a fit to points of an extent; FitError where one is unknown or out of its limits."""
-    if isinstance(weights, str) and weights not in ("fixed", "free"):
-        raise FitError(f"weights {weights!r} are unknown: `fixed` (all one), `free`, or positive numbers")
-    if not 2.0 <= power <= 16.0:
-        raise FitError(
-            f"power {power} was asked for: 2 is least squares, higher ones up to 16 weigh large distances more"
-        )
-    if tolerance is not None and not tolerance > 0.0:
-        raise FitError(f"a tolerance of {tolerance} was asked for: it must be positive")
-    return Options(
-        power=power,
-        weights_free=isinstance(weights, str) and weights == "free",
-        robust=robust,
-        tolerance=tolerance,
-        extent=extent,
-        report=progress or (lambda _: None),
-    )
-
-
-def checked_ends(ends: Any, unit: Unit) -> Reals | None:
-    """Two ends (2, d) that are given, in the unit of a fit; None for a word. Raises FitError."""
-    if isinstance(ends, str):
-        if ends in ("fixed", "free"):
-            return None
-        raise FitError(f"ends {ends!r} are unknown: `fixed`, `free`, or the first and the last point")
-    pair = _numbers(ends, "the ends")
-    if pair.shape != (2, len(unit.centre)) or not np.isfinite(pair).all():
-        raise FitError(f"ends of shape {pair.shape} were given: two finite points of {len(unit.centre)} coordinates")
-    return unit.scaled(pair)
+    def ends(self, ends: Any) -> Reals | None:
+        """Two ends (2, d) that are given, in extents about the centre; None for a word."""
+        if isinstance(ends, str):
+            if ends in ("fixed", "free"):
+                return None
+            raise FitError(f"ends {ends!r} are unknown: `fixed`, `free`, or the first and the last point")
+        pair, count = _numbers(ends, "the ends"), self.points.shape[1]
+        if pair.shape != (2, count) or not np.isfinite(pair).all():
+            raise FitError(f"ends of shape {pair.shape} were given: two finite points of {count} coordinates")
+        return self.scaled(pair)
 
 
 def _numbers(given: Any, what: str) -> Reals:
+    """An array of what was given; FitError where these are not numbers."""
     try:
         return np.array(given, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise FitError(f"{what} are not numbers ({error}); give an array of coordinates") from error
-
-
-def checked_points(points: ArrayLike, what: str, dimensions: tuple[int, ...] = ()) -> Reals:
-    """Points (n, d) that are finite and not all the same; FitError otherwise."""
-    given = _numbers(points, f"the points of {what}")
-    wanted = " or ".join(str(count) for count in dimensions) or "2, 3 or more"
-    if given.ndim != 2 or given.shape[1] < 2 or (dimensions and given.shape[1] not in dimensions):
-        raise FitError(
-            f"points of shape {given.shape} were given for {what}: give (n, d) with d = {wanted} coordinates"
-        )
-    wrong = np.flatnonzero(~np.isfinite(given).all(axis=1))
-    if len(wrong):
-        raise FitError(
-            f"{len(wrong)} of {len(given)} points of {what} are not finite, the first in row {wrong[0]} "
-            f"({given[wrong[0]].tolist()}); leave these rows out"
-        )
-    if len(given) < 2 or not (np.ptp(given, axis=0) > 0.0).any():
-        raise FitError(f"{len(given)} points at one place were given for {what}: it needs different ones")
-    return given

@@ -11,10 +11,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import null_space
-from scipy.sparse import csr_array
 
 from bladewright.errors import FitError, GeometryError
-from bladewright.fitting.freeform.search import STIFFNESSES, Options, Shape, ShapeMatch, matched_by_stages, placed
+from bladewright.fitting.freeform.fits import Request
+from bladewright.fitting.freeform.search import STIFFNESSES, Shape, ShapeMatch, matched_by_stages, placed
 from bladewright.numerics.quadrature import panels
 from bladewright.nurbs.basis import Reals, basis, breaks, checked_knots, uniform_knots
 from bladewright.nurbs.blossom import knot_change
@@ -53,8 +53,8 @@ class Net(Shape):
     """(N,) logarithms of the weights"""
     weighted: bool = False
     """whether the weights are unknown"""
-    held: Literal["none", "corners", "boundary"] = "none"
-    """control points that do not move"""
+    boundary: Literal["free", "corners", "fixed"] = "free"
+    """which of the outer control points do not move: none, the corners, or all"""
     closed: bool = False
     ends: tuple[int, ...] = ()
     """points whose places are held at the two ends of a curve; none where empty"""
@@ -63,7 +63,7 @@ class Net(Shape):
     def counts(self) -> tuple[int, ...]:
         """Numbers of control points along each direction."""
         if self.closed:
-            return (len(self.points),)
+            return (len(self.knots[0]) - 1,)
         return tuple(len(knots) - degree - 1 for knots, degree in zip(self.knots, self.degrees, strict=True))
 
     @cached_property
@@ -79,22 +79,20 @@ class Net(Shape):
         """(m, N) matrix from the control points to those of the clamped shape, which a closed curve has more of."""
         if not self.closed:
             return np.eye(len(self.points))
-        period, degree, count = self.knots[0], self.degrees[0], len(self.points)
-        whole = period[-1] - period[0]
-        around = np.concatenate([period[:-1] + turn * whole for turn in range(-degree - 1, degree + 2)])
-        first = int(np.searchsorted(around, period[0])) - degree
-        knots = around[first : first + count + 2 * degree + 1]
-        return np.asarray(
-            knot_change(knots, degree, self.clamped[0]) @ np.eye(count)[np.arange(count + degree) % count]
-        )
+        period, degree, (count,) = self.knots[0], self.degrees[0], self.counts
+        turn, place = np.divmod(np.arange(-degree, count + degree + 1), count)
+        around = period[place] + turn * (period[-1] - period[0])
+        change = knot_change(around, degree, self.clamped[0])
+        return np.asarray(change @ np.eye(count)[np.arange(count + degree) % count])
 
     @cached_property
     def free(self) -> NDArray[np.bool_]:
         """(N,) which control points move."""
-        if self.held == "none" or self.closed:
+        if self.boundary == "free" or self.closed:
             return np.ones(len(self.points), dtype=bool)
-        ends = np.meshgrid(*[np.isin(np.arange(count), (0, count - 1)) for count in self.counts], indexing="ij")
-        return ~(np.logical_and if self.held == "corners" else np.logical_or).reduce(ends).ravel()
+        places = zip(np.indices(self.counts), self.counts, strict=True)
+        outer = np.stack([np.isin(place, (0, count - 1)).ravel() for place, count in places])
+        return np.asarray(~(np.all if self.boundary == "corners" else np.any)(outer, axis=0))
 
     @cached_property
     def gauge(self) -> Reals:
@@ -104,12 +102,12 @@ class Net(Shape):
         """
         if not self.weighted:
             return np.zeros((len(self.points), 0))
-        index = np.meshgrid(*[np.arange(count, dtype=float) for count in self.counts], indexing="ij")
-        alike = [np.ones(len(self.points))]
-        for along, knots in zip(index, self.knots, strict=True):
-            if len(breaks(knots)) == 2 and not self.closed:
-                alike.append(along.ravel())
-        return np.asarray(null_space(np.array(alike)))
+        trends = [
+            along.ravel()
+            for along, knots in zip(np.indices(self.counts), self.knots, strict=True)
+            if len(breaks(knots)) == 2 and not self.closed
+        ]
+        return np.asarray(null_space(np.array([np.ones(len(self.points)), *trends])))
 
     @cached_property
     def bending_root(self) -> Reals:
@@ -118,16 +116,11 @@ class Net(Shape):
         The bending is the integral of all squared second derivatives by the parameters, and a part of the first: a
         thin plate under tension (Duchon 1977, Franke 1985).
         """
-        mass, slope, bend = zip(
-            *(_products(knots, degree) for knots, degree in zip(self.clamped, self.degrees, strict=True)), strict=True
-        )
-        energy = bend[0] + TENSION * slope[0]
-        if len(mass) == 2:
-            energy = (
-                np.kron(energy, mass[1])
-                + 2.0 * np.kron(slope[0], slope[1])
-                + np.kron(mass[0], bend[1] + TENSION * slope[1])
-            )
+        of = [_products(knots, degree) for knots, degree in zip(self.clamped, self.degrees, strict=True)]
+        energy, *across = (bend + TENSION * slope for _, slope, bend in of)
+        for other in across:
+            (mass_u, slope_u, _), (mass_v, slope_v, _) = of
+            energy = np.kron(energy, mass_v) + 2.0 * np.kron(slope_u, slope_v) + np.kron(mass_u, other)
         values, vectors = np.linalg.eigh(self.spread.T @ energy @ self.spread)
         return np.asarray(np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T)
 
@@ -199,19 +192,17 @@ class Net(Shape):
         of = self.shape.derivatives(parameters[:, 0], parameters[:, 1], 1)
         return of[0, 0], np.stack([of[1, 0], of[0, 1]], axis=1), free
 
-    def basis(self, parameters: Reals) -> csr_array:
+    def basis(self, parameters: Reals) -> Reals:
         """(m, N) matrix whose product with the control points are the places at parameters (m, k)."""
-        matrix = collocation(self.shape, *parameters.T)
+        matrix = collocation(self.shape, *parameters.T).toarray()
         if self.closed:
-            matrix = csr_array(matrix @ csr_array(self.spread))
-        if not self.log_weights.any():
-            return matrix
-        scaled = csr_array(matrix * np.exp(self.log_weights)[None, :])
-        return csr_array(scaled * (1.0 / scaled.sum(axis=1))[:, None])
+            matrix = matrix @ self.spread
+        scaled = matrix * np.exp(self.log_weights)
+        return np.asarray(scaled / scaled.sum(axis=1)[:, None])
 
     def slopes(self, parameters: Reals, directions: Reals) -> Reals:
         """Derivatives (m r, n) by the unknowns of places at held parameters (m, k), along directions (m, r, d)."""
-        matrix = self.basis(parameters).toarray()
+        matrix = self.basis(parameters)
         moved = matrix[:, None, self.free, None] * directions[:, :, None]
         moved = moved.reshape(matrix.shape[0] * directions.shape[1], -1)
         if not self.weighted:
@@ -230,39 +221,36 @@ class Net(Shape):
     def through(self, points: Reals, shares: Reals) -> Net:
         """The net nearest to points (m, d) at shares (m, k) of the domain, and a little stiff."""
         low, high = self.domain
-        matrix = self.basis(low + (high - low) * shares)
-        normal = (matrix.T @ matrix).toarray() / len(points) + STIFFNESSES[1] * self.bending_root.T @ self.bending_root
-        # a trace of the identity holds control points that neither points nor bending determine
-        normal += 1e-14 * np.eye(len(normal))
-        return replace(self, points=np.linalg.solve(normal, np.asarray(matrix.T @ points) / len(points)))
+        root = np.sqrt(STIFFNESSES[1] * len(points)) * self.bending_root
+        rows = np.concatenate([self.basis(low + (high - low) * shares), root])
+        sides = np.concatenate([points, np.zeros((len(root), points.shape[1]))])
+        return replace(self, points=np.linalg.lstsq(rows, sides, rcond=None)[0])
 
     def refined(self, knots: Sequence[float], direction: int = 0) -> Net:
         """The same shape with further knots."""
         every = list(self.knots)
         every[direction] = np.sort(np.concatenate([every[direction], knots]))
-        along = DIRECTIONS[direction]
-        shape = inserted(self.shape, knots) if isinstance(self.shape, Curve) else inserted(self.shape, knots, along)
-        finer = net_of(shape, closed=self.closed, knots=tuple(every))
-        return replace(finer, held=self.held, weighted=self.weighted, ends=self.ends)
+        along, shape = DIRECTIONS[direction], self.shape
+        finer = inserted(shape, knots) if isinstance(shape, Curve) else inserted(shape, knots, along)
+        net = net_of(finer, closed=self.closed, knots=tuple(every))
+        return replace(net, boundary=self.boundary, weighted=self.weighted, ends=self.ends)
 
 
 def net_of(shape: Curve | Surface, *, closed: bool = False, knots: tuple[Reals, ...] = ()) -> Net:
     """A curve or surface as a net; of a closed curve the nearest on its distinct knots."""
-    coordinates = shape.homogeneous.reshape(-1, shape.homogeneous.shape[-1])
-    if shape.weights is None:
-        coordinates = np.concatenate([coordinates, np.ones((len(coordinates), 1))], axis=1)
-    degrees: tuple[int, ...]
-    own: tuple[Reals, ...]
     if isinstance(shape, Curve):
-        degrees, own = (shape.degree,), (breaks(shape.knots) if closed else shape.knots,)
+        degrees: tuple[int, ...] = (shape.degree,)
+        own: tuple[Reals, ...] = (breaks(shape.knots) if closed else shape.knots,)
     else:
         degrees, own = (shape.degree_u, shape.degree_v), (shape.knots_u, shape.knots_v)
-    net = Net(knots=knots or own, degrees=degrees, points=np.zeros((0, 0)), log_weights=np.zeros(0), closed=closed)
+    points = shape.control_points.reshape(-1, shape.control_points.shape[-1])
+    weights = np.ones(len(points)) if shape.weights is None else shape.weights.ravel()
+    net = Net(knots=knots or own, degrees=degrees, points=points, log_weights=np.log(weights), closed=closed)
     if closed:
-        empty = replace(net, points=np.zeros((len(net.knots[0]) - 1, 1)))
-        coordinates = np.linalg.lstsq(empty.spread, coordinates, rcond=None)[0]
-    logs = np.zeros(len(coordinates)) if shape.weights is None else np.log(coordinates[:, -1])
-    return replace(net, points=coordinates[:, :-1] / coordinates[:, -1:], log_weights=logs)
+        both = np.linalg.lstsq(net.spread, np.column_stack([weights[:, None] * points, weights]), rcond=None)[0]
+        logs = np.zeros(len(both)) if shape.weights is None else np.log(both[:, -1])
+        net = replace(net, points=both[:, :-1] / both[:, -1:], log_weights=logs)
+    return net
 
 
 def empty_net(
@@ -307,11 +295,11 @@ def _products(knots: Reals, degree: int) -> list[Reals]:
     return [np.asarray(values.T @ (weight[:, None] * values)) for values in orders]
 
 
-def matched_within(net: Net, points: Reals, options: Options, *, warm: bool) -> tuple[ShapeMatch[Net], tuple[str, ...]]:
+def matched_within(net: Net, points: Reals, request: Request, *, warm: bool) -> tuple[ShapeMatch[Net], tuple[str, ...]]:
     """The match within the largest distance that is asked for, and a note why it is not reached."""
     dimensions = len(net.knots)
     unknowns = int(net.free.sum()) * (points.shape[1] if dimensions == 1 else 1)
-    unknowns += len(net.points) - 1 if options.weights_free else 0
+    unknowns += len(net.points) - 1 if request.weights_free else 0
     rows = len(np.unique(points, axis=0)) * (points.shape[1] - dimensions)
     if unknowns > rows:
         raise FitError(
@@ -319,21 +307,21 @@ def matched_within(net: Net, points: Reals, options: Options, *, warm: bool) -> 
             f"{' x '.join(map(str, net.counts))} control points: take fewer control points, fixed weights, or more "
             "points"
         )
-    match = matched_by_stages(placed(net, points), options, () if warm else STIFFNESSES)
-    limit = np.inf if options.tolerance is None else options.tolerance / options.extent
+    match = matched_by_stages(placed(net, points), request, warm=warm)
+    limit = np.inf if request.tolerance is None else request.tolerance / request.extent
     for _ in range(KNOT_ROUNDS):
         if match.largest <= limit:
             return match, ()
         finer, reason = _finer(match, limit)
         if finer is None:
-            reason = reason or f"noise of about {match.noise * options.extent:.3g} stops further knots"
+            reason = reason or f"noise of about {match.noise * request.extent:.3g} stops further knots"
             break
-        options.report(f"{len(finer.points)} control points")
-        match = matched_by_stages(replace(match, shape=finer, weights=np.ones(len(points))), options, ())
+        request.report(f"{len(finer.points)} control points")
+        match = matched_by_stages(replace(match, shape=finer, weights=np.ones(len(points))), request, warm=True)
     else:
         reason = f"{KNOT_ROUNDS} rounds of knots do not reach it"
-    far = match.largest * options.extent
-    return match, (f"the largest distance is {far:.3g} where {options.tolerance:.3g} was asked for: {reason}",)
+    far = match.largest * request.extent
+    return match, (f"the largest distance is {far:.3g} where {request.tolerance:.3g} was asked for: {reason}",)
 
 
 def _finer(match: ShapeMatch[Net], limit: float) -> tuple[Net | None, str]:
@@ -359,6 +347,6 @@ def _finer(match: ShapeMatch[Net], limit: float) -> tuple[Net | None, str]:
             continue
         trial = replace(match, shape=finer)
         step = np.linalg.lstsq(trial.jacobian, trial.residuals, rcond=1e-6)[0]
-        gain = np.sum(trial.residuals**2) - np.sum((trial.residuals - trial.jacobian @ step) ** 2)
-        found.append((float(gain) / (len(finer.points) - len(match.shape.points)), finer))
+        gain = float(np.sum((trial.jacobian @ step) ** 2))
+        found.append((gain / (len(finer.points) - len(match.shape.points)), finer))
     return max(found, key=lambda each: each[0])[1] if found else None, reason

@@ -14,16 +14,9 @@ from scipy.spatial import QhullError, cKDTree
 
 from bladewright.derivatives.complex_step import STEP
 from bladewright.errors import FitError
-from bladewright.fitting.freeform.fits import (
-    FreeformFit,
-    Unit,
-    checked_ends,
-    checked_options,
-    checked_points,
-    figures_of,
-)
+from bladewright.fitting.freeform.fits import FreeformFit, Request
 from bladewright.fitting.freeform.net import LAST_STEP, Net
-from bladewright.fitting.freeform.search import STIFFNESSES, Shape, matched_by_stages, placed
+from bladewright.fitting.freeform.search import Shape, matched_by_stages, placed
 from bladewright.fitting.initial_guess.slices import PLACES, PlanePoints, longest_chord, slices_of
 from bladewright.numerics.elementary import Array, length, turned_left
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
@@ -72,7 +65,7 @@ class CamberThickness(Shape):
                 degrees=(DEGREE,),
                 points=self.camber.control_points,
                 log_weights=np.zeros(len(self.camber.control_points)),
-                held="corners" if self.fixed else "none",
+                boundary="corners" if self.fixed else "free",
             ),
             Net(knots=(of.knots,), degrees=(DEGREE,), points=of.control_points, log_weights=logs, weighted=True),
         )
@@ -106,7 +99,6 @@ class CamberThickness(Shape):
         )
 
     def nearest(self, points: Reals, near: Reals | None = None) -> Reals:
-        """Parameters (m, 1) of the nearest places of points (m, 2): of all, or where descents from `near` end."""
         starts = [] if near is None else [near[:, 0]]
         if near is None:
             starts = [sign * SITES[cKDTree(self(sign * SITES)).query(points)[1]] for sign in (1.0, -1.0)]
@@ -229,12 +221,8 @@ def fit_profile(
     Source: the freeform NURBS blading paper, sections 3.1 and 4.2 (its objective with power 4); the thickness is laid
     off along the camber's normals.
     """
-    given = checked_points(points, "a profile", (2,))
-    unit = Unit(given)
-    pair, scaled = checked_ends(ends, unit), unit.scaled(given)
-    options = checked_options(
-        weights="fixed", power=power, robust=False, tolerance=tolerance, extent=unit.extent, progress=progress
-    )
+    request = Request("a profile", points, 2, power=power, tolerance=tolerance, progress=progress)
+    pair, scaled = request.ends(ends), request.scaled(request.points)
     if trailing_edge not in ("blunt", "round"):
         raise FitError(f"trailing edge {trailing_edge!r} is unknown: `blunt` or `round`")
     free = isinstance(ends, str) and ends == "free"
@@ -248,19 +236,18 @@ def fit_profile(
         match = placed(replace(start, fixed=True), scaled)
         upper = match.parameters[:, 0] >= 0.0
         counts = np.where(upper, np.sum(upper), np.sum(~upper))
-        match = matched_by_stages(replace(match, weights=0.5 * len(scaled) / counts), options, STIFFNESSES[2:])
+        match = matched_by_stages(replace(match, weights=0.5 * len(scaled) / counts), request)
         if free:
             # last, because a blunt edge that stands out of its points costs nothing (design/freeform.md)
-            match = matched_by_stages(replace(match, shape=replace(match.shape, fixed=False)), options, ())
+            match = matched_by_stages(replace(match, shape=replace(match.shape, fixed=False)), request, warm=True)
         of, u = match.shape, match.parameters[:, 0]
-        heights = of.thickness.control_points * unit.extent + np.array([unit.centre[0], 0.0])
+        heights = of.thickness.control_points * request.extent + np.array([request.centre[0], 0.0])
         return ProfileFit(
-            camber=replace(of.camber, control_points=unit.restored(of.camber.control_points)),
+            camber=replace(of.camber, control_points=request.restored(of.camber.control_points)),
             thickness=replace(of.thickness, control_points=heights),
             upper=u >= 0.0,
             t=np.abs(u),
-            tolerance=tolerance,
-            **figures_of(match, unit.extent),
+            **match.figures(request),
         )
 
     found = fitted(camber, thickness)

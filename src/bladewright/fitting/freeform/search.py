@@ -8,15 +8,15 @@ along its tangents (tangent distance minimisation: Wang, Pottmann and Liu 2006).
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Generic, Self, TypeVar
+from typing import Any, Generic, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from bladewright.fitting.freeform.fits import Request
 from bladewright.numerics.least_squares import ConstrainedProblem, constrained_minimum
 from bladewright.numerics.robust import median_deviation
 from bladewright.nurbs.basis import Reals
@@ -75,21 +75,6 @@ class Shape(ABC):
 S = TypeVar("S", bound=Shape)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Options:
-    """What is asked of a fit."""
-
-    power: float = 2.0
-    weights_free: bool = False
-    robust: bool = False
-    tolerance: float | None = None
-    """largest distance, in the unit of the points"""
-    extent: float = 1.0
-    """of the points in their own unit, for messages"""
-    report: Callable[[str], None] = lambda _: None
-    """is handed a few words on what is done"""
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ShapeMatch(Generic[S]):
     """A shape beside points (m, d) of unit extent."""
@@ -106,6 +91,10 @@ class ShapeMatch(Generic[S]):
     """distance that costs 1"""
     evaluations: int = 0
     converged: bool = False
+
+    def on(self, shape: S, *, follow: bool = False) -> ShapeMatch[S]:
+        """Another shape beside the same points, whose places are sought everywhere or `follow` from these."""
+        return replace(self, shape=shape, parameters=shape.nearest(self.points, self.parameters if follow else None))
 
     @cached_property
     def _touching(self) -> tuple[Reals, Reals, NDArray[np.bool_]]:
@@ -162,6 +151,11 @@ class ShapeMatch(Generic[S]):
         """Directions of the unknowns that the points determine."""
         return int(np.sum(self.singular_values > DETERMINED * self.singular_values.max(initial=0.0)))
 
+    @property
+    def softest(self) -> float:
+        """The least stiffness: none where the points determine the shape."""
+        return 0.0 if self.rank == len(self.shape.unknowns) else STIFFNESSES[-1]
+
     @cached_property
     def noise(self) -> float:
         """Standard deviation across the shape, by what planes through neighbours leave (Gasser et al. 1986)."""
@@ -181,6 +175,27 @@ class ShapeMatch(Generic[S]):
         """Number of directions across the shape."""
         return self.points.shape[1] - self.parameters.shape[1]
 
+    def figures(self, request: Request, *notes: str) -> dict[str, Any]:
+        """The figures of a fit, in the unit of the points that were given."""
+        rank, unknowns = self.rank, len(self.singular_values)
+        if rank < unknowns:
+            open_note = (
+                f"the points determine {rank} of {unknowns} directions of the unknowns: the others bend the shape as "
+                "little as they can"
+            )
+            notes = (*notes, open_note)
+        return {
+            "distances": self.distances * request.extent,
+            "inliers": self.inliers,
+            "iterations": self.evaluations,
+            "converged": self.converged,
+            "singular_values": self.singular_values,
+            "rank": rank,
+            "noise": self.noise * request.extent,
+            "tolerance": request.tolerance,
+            "notes": notes,
+        }
+
 
 class Problem(ConstrainedProblem, Generic[S]):
     """The residuals of a shape's distances and bending; places follow from those of the unknowns accepted last."""
@@ -199,7 +214,7 @@ class Problem(ConstrainedProblem, Generic[S]):
     def at(self, z: Reals) -> ShapeMatch[S]:
         """The shape at unknowns (n,), with its nearest places."""
         if not np.array_equal(z, self.z):
-            self.z, self.tried = z.copy(), _placed_on(self.accepted.shape.changed(z), self.accepted, follow=True)
+            self.z, self.tried = z.copy(), self.accepted.on(self.accepted.shape.changed(z), follow=True)
         return self.tried
 
     def values(self, z: Reals) -> tuple[Reals, Reals]:
@@ -208,67 +223,58 @@ class Problem(ConstrainedProblem, Generic[S]):
         return np.concatenate([found.residuals, found.shape.bending(self.stiffness)[0]]), np.zeros(0)
 
     def derivatives(self, z: Reals) -> tuple[Reals, Reals]:
-        self.accepted = self.at(z)
-        slopes = np.concatenate([self.accepted.jacobian, self.accepted.shape.bending(self.stiffness)[1]])
-        return slopes, np.zeros((0, len(z)))
+        found = self.accepted = self.at(z)
+        return np.concatenate([found.jacobian, found.shape.bending(self.stiffness)[1]]), np.zeros((0, len(z)))
 
 
 def placed(shape: S, points: Reals, weights: Reals | None = None) -> ShapeMatch[S]:
-    """A shape beside points (m, d), with the nearest places of all; they count alike unless there are weights."""
+    """A shape beside points (m, d); they count alike unless there are weights."""
     weights = np.ones(len(points)) if weights is None else weights
     return ShapeMatch(shape=shape, points=points, weights=weights, parameters=shape.nearest(points))
-
-
-def _placed_on(shape: S, match: ShapeMatch[S], *, follow: bool) -> ShapeMatch[S]:
-    parameters = shape.nearest(match.points, match.parameters if follow else None)
-    return replace(match, shape=shape, parameters=parameters)
 
 
 def matched(match: ShapeMatch[S], stiffness: float, end: tuple[int, float] = LAST) -> ShapeMatch[S]:
     """The shape at which the cost of the distances, and `stiffness` times its bending, are least.
 
-    Places follow the shape by descent while it moves, and are sought everywhere at the end.
+    Places follow the shape by descent while it moves, and are sought everywhere at the end (design/freeform.md).
     """
     if len(match.shape.unknowns) == 0:
         return replace(match, converged=True)
     problem, (steps, reduction) = Problem(match, stiffness), end
     found = constrained_minimum(problem, problem.start, steps=steps, min_reduction=reduction, accelerated=False)
-    match = problem.at(found.z)
-    everywhere = _placed_on(match.shape, match, follow=False)
-    nearer = everywhere.distances < match.distances
+    last = problem.at(found.z)
+    everywhere = last.on(last.shape)
+    nearer = (everywhere.distances < last.distances)[:, None]
     return replace(
-        match,
-        parameters=np.where(nearer[:, None], everywhere.parameters, match.parameters),
+        last,
+        parameters=np.where(nearer, everywhere.parameters, last.parameters),
         evaluations=match.evaluations + problem.evaluations,
         converged=found.converged,
     )
 
 
-def matched_by_stages(
-    match: ShapeMatch[S], options: Options, stiffnesses: tuple[float, ...] = STIFFNESSES
-) -> ShapeMatch[S]:
-    """The match of a shape to points while it softens, then with free weights, then with another power."""
-    if options.robust:
-        options.report("without outliers")
-        match = _without_outliers(match, stiffnesses)
+def matched_by_stages(match: ShapeMatch[S], request: Request, *, warm: bool = False) -> ShapeMatch[S]:
+    """The match of a shape to points while it softens, then with free weights, then with another power.
+
+    A `warm` one is near already and is matched as soft as it ends.
+    """
+    stiffnesses = () if warm else STIFFNESSES
+    if request.robust:
+        request.report("without outliers")
+        match = _without_outliers(match, (*stiffnesses[:2], *[STIFFNESSES[2]] * REWEIGHTINGS))
     for stiffness in stiffnesses:
-        options.report(f"{len(match.shape.unknowns)} unknowns, stiffness {stiffness:g}")
+        request.report(f"{len(match.shape.unknowns)} unknowns, stiffness {stiffness:g}")
         match = matched(match, stiffness, ROUGH)
-    match = matched(match, _softest(match))
-    if options.weights_free:
-        options.report("free weights")
+    match = matched(match, match.softest)
+    if request.weights_free:
+        request.report("free weights")
         match = replace(match, shape=match.shape.freed)
-        match = matched(match, _softest(match))
-    if options.power != 2.0:
-        options.report(f"power {options.power:g}")
-        costly = replace(match, power=options.power, scale=max(match.largest, EXACT))
-        match = replace(matched(costly, _softest(match)), power=2.0, scale=1.0)
+        match = matched(match, match.softest)
+    if request.power != 2.0:
+        request.report(f"power {request.power:g}")
+        costly = replace(match, power=request.power, scale=max(match.largest, EXACT))
+        match = replace(matched(costly, match.softest), power=2.0, scale=1.0)
     return match
-
-
-def _softest(match: ShapeMatch[S]) -> float:
-    """The least stiffness: none where the points determine the shape."""
-    return 0.0 if match.rank == len(match.shape.unknowns) else STIFFNESSES[-1]
 
 
 def _without_outliers(match: ShapeMatch[S], stiffnesses: tuple[float, ...]) -> ShapeMatch[S]:
@@ -277,7 +283,7 @@ def _without_outliers(match: ShapeMatch[S], stiffnesses: tuple[float, ...]) -> S
     They are told apart beside the shape of least distances, which leaves no part of the points behind, by iteratively
     reweighted least squares (Holland and Welsch 1977).
     """
-    for stiffness in (*stiffnesses[:2], *[STIFFNESSES[2]] * REWEIGHTINGS):
+    for stiffness in stiffnesses:
         spread = max(median_deviation(match.distances), EXACT)
         match = matched(replace(match, weights=spread / np.maximum(match.distances, spread)), stiffness, ROUGH)
     inliers = match.distances <= max(OUTLYING_NOISE * median_deviation(match.distances), EXACT)
