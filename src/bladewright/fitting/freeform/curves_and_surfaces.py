@@ -98,8 +98,7 @@ def fit_curve(
             first, last = scaled[list(outermost)] if pair is None else pair
             net = replace(net, boundary="corners", points=np.stack([first, *net.points[1:-1], last]))
     match, notes = matched_within(net, scaled, request, warm=start is not None)
-    curve = match.shape.shape
-    assert isinstance(curve, Curve)  # noqa: S101 - one direction
+    curve = match.shape.curve
     curve = replace(curve, control_points=request.restored(curve.control_points))
     return CurveFit(curve=curve, u=match.parameters[:, 0], **match.figures(request, *notes))
 

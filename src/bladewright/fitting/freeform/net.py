@@ -131,12 +131,10 @@ class Net(Shape):
 
     @property
     def freed(self) -> Net:
-        """The net with unknown weights."""
         return replace(self, weighted=True)
 
     def changed(self, unknowns: Reals) -> Net:
-        """The net with other values of its unknowns."""
-        points, moved = self.points.copy(), self.points[self.free].size
+        points, moved = self.points.astype(unknowns.dtype), self.points[self.free].size
         points[self.free] = unknowns[:moved].reshape(-1, points.shape[1])
         logs = self.log_weights + self.gauge @ (unknowns[moved:] - self.gauge.T @ self.log_weights)
         return replace(self, points=points, log_weights=logs)
@@ -158,6 +156,12 @@ class Net(Shape):
             degree_u=self.degrees[0],
             degree_v=self.degrees[1],
         )
+
+    @property
+    def curve(self) -> Curve:
+        """The shape of one direction."""
+        assert isinstance(self.shape, Curve)  # noqa: S101 - of a surface nobody asks it
+        return self.shape
 
     @property
     def domain(self) -> Reals:
@@ -183,7 +187,6 @@ class Net(Shape):
         return parameters
 
     def tangents(self, parameters: Reals) -> tuple[Reals, Reals, NDArray[np.bool_]]:
-        """Places (m, d), tangents (m, k, d), and along which of them (m, k) a place is free to move."""
         low, high = self.domain
         free = (parameters > low) & (parameters < high) | self.closed
         if isinstance(self.shape, Curve):
@@ -201,7 +204,6 @@ class Net(Shape):
         return np.asarray(scaled / scaled.sum(axis=1)[:, None])
 
     def slopes(self, parameters: Reals, directions: Reals) -> Reals:
-        """Derivatives (m r, n) by the unknowns of places at held parameters (m, k), along directions (m, r, d)."""
         matrix = self.basis(parameters)
         moved = matrix[:, None, self.free, None] * directions[:, :, None]
         moved = moved.reshape(matrix.shape[0] * directions.shape[1], -1)
@@ -213,7 +215,6 @@ class Net(Shape):
         return np.concatenate([moved, turned @ self.gauge], axis=1)
 
     def bending(self, stiffness: float) -> tuple[Reals, Reals]:
-        """Residuals (b,) whose squares are the bending, times its weight, and their derivatives (b, n)."""
         root = np.sqrt(stiffness) * self.bending_root
         slopes = np.kron(root[:, self.free], np.eye(self.points.shape[1]))
         return (root @ self.points).ravel(), np.pad(slopes, ((0, 0), (0, self.gauge.shape[1])))

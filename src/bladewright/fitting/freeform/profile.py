@@ -15,7 +15,7 @@ from scipy.spatial import QhullError, cKDTree
 from bladewright.derivatives.complex_step import STEP
 from bladewright.errors import FitError
 from bladewright.fitting.freeform.fits import FreeformFit, Request
-from bladewright.fitting.freeform.net import LAST_STEP, Net
+from bladewright.fitting.freeform.net import LAST_STEP, Net, net_of
 from bladewright.fitting.freeform.search import Shape, matched_by_stages, placed
 from bladewright.fitting.initial_guess.slices import PLACES, PlanePoints, longest_chord, slices_of
 from bladewright.numerics.elementary import Array, length, turned_left
@@ -47,28 +47,11 @@ class CamberThickness(Shape):
     place's parameter is that of the thickness, negative on the lower side, so that the leading edge is at 0.
     """
 
-    camber: Curve
-    thickness: Curve
+    camber: Net
+    thickness: Net
+    """whose weights are unknown"""
     round_end: bool = False
     """whether the trailing edge is round as the leading edge is"""
-    fixed: bool = False
-    """whether the camber's ends stay"""
-
-    @cached_property
-    def nets(self) -> tuple[Net, Net]:
-        """Camber and thickness, whose weights are unknown; what moves of them."""
-        of, weights = self.thickness, self.thickness.weights
-        logs = np.zeros(len(of.control_points)) if weights is None else np.log(weights)
-        return (
-            Net(
-                knots=(self.camber.knots,),
-                degrees=(DEGREE,),
-                points=self.camber.control_points,
-                log_weights=np.zeros(len(self.camber.control_points)),
-                boundary="corners" if self.fixed else "free",
-            ),
-            Net(knots=(of.knots,), degrees=(DEGREE,), points=of.control_points, log_weights=logs, weighted=True),
-        )
 
     @property
     def heights(self) -> slice:
@@ -77,25 +60,18 @@ class CamberThickness(Shape):
 
     @property
     def unknowns(self) -> Reals:
-        """Values of the unknowns."""
-        camber, thickness = self.nets
-        return np.concatenate(
-            [camber.unknowns, thickness.points[self.heights, 1], thickness.gauge.T @ thickness.log_weights]
-        )
+        of = self.thickness
+        return np.concatenate([self.camber.unknowns, of.points[self.heights, 1], of.gauge.T @ of.log_weights])
 
     def changed(self, unknowns: Array) -> CamberThickness:
         """The profile with other values of its unknowns, which may be complex."""
-        camber, net = (of.control_points.astype(unknowns.dtype) for of in (self.camber, self.thickness))
-        free = self.nets[0].free
-        moved, gauge = 2 * int(free.sum()), self.nets[1].gauge
-        camber[free] = unknowns[:moved].reshape(-1, 2)
-        net[self.heights, 1] = unknowns[moved : len(unknowns) - gauge.shape[1]]
-        net[:, 0] = abscissae_of(len(net), camber[0, 0], camber[-1, 0], round_end=self.round_end)
-        weights = np.exp(gauge @ unknowns[len(unknowns) - gauge.shape[1] :])
+        of, moved = self.thickness, len(self.camber.unknowns)
+        last = len(unknowns) - of.gauge.shape[1]
+        camber, points = self.camber.changed(unknowns[:moved]), of.points.astype(unknowns.dtype)
+        points[self.heights, 1] = unknowns[moved:last]
+        points[:, 0] = abscissae_of(len(points), *camber.points[[0, -1], 0], round_end=self.round_end)
         return replace(
-            self,
-            camber=replace(self.camber, control_points=camber),
-            thickness=replace(self.thickness, control_points=net, weights=weights),
+            self, camber=camber, thickness=replace(of, points=points, log_weights=of.gauge @ unknowns[last:])
         )
 
     def nearest(self, points: Reals, near: Reals | None = None) -> Reals:
@@ -112,57 +88,44 @@ class CamberThickness(Shape):
         return place.real, place.imag / STEP, np.zeros_like(place.real)
 
     def tangents(self, parameters: Reals) -> tuple[Reals, Reals, NDArray[np.bool_]]:
-        """Places (m, 2), tangents (m, 1, 2), and whether (m, 1) a place is free to move."""
         place, tangent, _ = self._derivatives(parameters[:, 0])
         return place, tangent[:, None], parameters**2 < 1.0
 
     def slopes(self, parameters: Reals, directions: Reals) -> Reals:
-        """Derivatives (m r, n) by the unknowns of places at held parameters (m, 1), along directions (m, r, 2)."""
         u, at = parameters[:, 0], self.unknowns
         near = self._sites(u)
         columns = [self.changed(at + 1j * STEP * each)(u, near).imag / STEP for each in np.eye(len(at))]
         return np.einsum("nmd,mrd->mrn", columns, directions).reshape(-1, len(at))
 
     def bending(self, stiffness: float) -> tuple[Reals, Reals]:
-        """Residuals (b,) whose squares are the bending and the weights' logarithms, times its weight.
-
-        And their derivatives (b, n).
-        """
-        camber, thickness = self.nets
-        cost = np.sqrt(stiffness)
-        slopes = cost * block_diag(
-            np.kron(camber.bending_root[:, camber.free], np.eye(2)),
-            thickness.bending_root[:, self.heights],
-            np.eye(thickness.gauge.shape[1]),
-        )
-        residuals = [
-            (camber.bending_root @ camber.points).ravel(),
-            thickness.bending_root @ thickness.points[:, 1],
-            thickness.gauge.T @ thickness.log_weights,
-        ]
-        return cost * np.concatenate(residuals), slopes
+        """As of a shape; the logarithms of the weights count too."""
+        camber, of, cost = self.camber, self.thickness, np.sqrt(stiffness)
+        bent, slopes = camber.bending(stiffness)
+        heights, logs = cost * of.bending_root @ of.points[:, 1], cost * of.gauge.T @ of.log_weights
+        more = cost * of.bending_root[:, self.heights], cost * np.eye(len(logs))
+        return np.concatenate([bent, heights, logs]), block_diag(slopes, *more)
 
     @cached_property
     def _abscissae(self) -> Reals:
-        return np.maximum.accumulate(np.real(self.camber(SITES)[:, 0]))
+        return np.maximum.accumulate(np.real(self.camber.curve(SITES)[:, 0]))
 
     def _sites(self, u: Array) -> Reals:
         """Camber parameters (n,) at parameters u (n,) of the thickness, where the abscissae are the same."""
-        abscissae = np.real(self.thickness(np.abs(np.real(u)))[:, 0])
+        abscissae = np.real(self.thickness.curve(np.abs(np.real(u)))[:, 0])
         found = np.interp(abscissae, self._abscissae, SITES)
         # from 1e-5, squared twice, and once more in each evaluation
         for _ in range(2):
-            place, slope = (np.real(each[:, 0]) for each in self.camber.derivatives(found, 1))
+            place, slope = (np.real(each[:, 0]) for each in self.camber.curve.derivatives(found, 1))
             found = np.clip(found - (place - abscissae) / np.maximum(slope, 1e-9), 0.0, 1.0)
         return found
 
     def __call__(self, u: Array, near: Reals | None = None) -> Array:
         """Points (n, 2) at parameters u (n,), which may be complex; camber parameters `near` (n,) are then at hand."""
         sign = np.where(np.real(u) < 0.0, -1.0, 1.0)
-        x, h = self.thickness(sign * u).T
+        x, h = self.thickness.curve(sign * u).T
         near = self._sites(u) if near is None else near
-        first, slope = self.camber.derivatives(near, 1)
-        place, tangent = self.camber.derivatives(near + (x - first[:, 0]) / slope[:, 0], 1)
+        first, slope = self.camber.curve.derivatives(near, 1)
+        place, tangent = self.camber.curve.derivatives(near + (x - first[:, 0]) / slope[:, 0], 1)
         return np.asarray(place + (sign * h / length(tangent))[:, None] * turned_left(tangent))
 
 
@@ -192,7 +155,8 @@ class ProfileFit(FreeformFit):
         """Points (m, 2) of a side at parameters t (m,) of the thickness, leading edge at 0."""
         at = np.atleast_1d(np.asarray(t, dtype=np.float64))
         # the smallest number below zero is the leading edge of the lower side
-        return CamberThickness(camber=self.camber, thickness=self.thickness)(at if upper else -np.maximum(at, 1e-300))
+        of = CamberThickness(camber=net_of(self.camber), thickness=net_of(self.thickness))
+        return of(at if upper else -np.maximum(at, 1e-300))
 
 
 def fit_profile(
@@ -233,18 +197,19 @@ def fit_profile(
             moved = start.unknowns
             moved[:2], moved[2 * camber - 2 : 2 * camber] = pair
             start = start.changed(moved)
-        match = placed(replace(start, fixed=True), scaled)
+        match = placed(replace(start, camber=replace(start.camber, boundary="corners")), scaled)
         upper = match.parameters[:, 0] >= 0.0
         counts = np.where(upper, np.sum(upper), np.sum(~upper))
         match = matched_by_stages(replace(match, weights=0.5 * len(scaled) / counts), request)
         if free:
             # last, because a blunt edge that stands out of its points costs nothing (design/freeform.md)
-            match = matched_by_stages(replace(match, shape=replace(match.shape, fixed=False)), request, warm=True)
+            loose = replace(match.shape, camber=replace(match.shape.camber, boundary="free"))
+            match = matched_by_stages(replace(match, shape=loose), request, warm=True)
         of, u = match.shape, match.parameters[:, 0]
-        heights = of.thickness.control_points * request.extent + np.array([request.centre[0], 0.0])
+        heights = of.thickness.points * request.extent + np.array([request.centre[0], 0.0])
         return ProfileFit(
-            camber=replace(of.camber, control_points=request.restored(of.camber.control_points)),
-            thickness=replace(of.thickness, control_points=heights),
+            camber=replace(of.camber.curve, control_points=request.restored(of.camber.points)),
+            thickness=replace(of.thickness.curve, control_points=heights),
             upper=u >= 0.0,
             t=np.abs(u),
             **match.figures(request),
@@ -294,13 +259,9 @@ def _start(points: Reals, camber: int, thickness: int, *, round_end: bool) -> Ca
     heights = np.zeros(thickness)
     inner = slice(1, -1) if round_end else slice(1, None)
     heights[inner] = np.linalg.lstsq(rows[:, inner], half, rcond=None)[0]
+    points = np.stack([abscissae, heights], axis=-1)
     return CamberThickness(
-        camber=line,
-        thickness=Curve(
-            control_points=np.stack([abscissae, heights], axis=-1),
-            knots=knots,
-            degree=DEGREE,
-            weights=np.ones(thickness),
-        ),
+        camber=net_of(line),
+        thickness=Net(knots=(knots,), degrees=(DEGREE,), points=points, log_weights=np.zeros(thickness), weighted=True),
         round_end=round_end,
     )
