@@ -9,7 +9,6 @@ from scipy.special import stdtrit
 from bladewright.fitting.assessment.result import Estimate
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.matching.noise import neighbourhood_of
-from bladewright.fitting.matching.residuals import CloudResiduals
 from bladewright.fitting.matching.search import Match
 from bladewright.nurbs.basis import Reals
 
@@ -48,49 +47,43 @@ def parameter_estimates(match: Match) -> ParameterEstimates:
     away. References: Bates and Watts 1988, section 2.3 (linear approximation); Seber and Wild 1989, section 2.1.4
     (weights that are not the inverse variances).
     """
-    problem = match.problem
-    size = problem.scales.size
-    rows = problem.cloud_residuals.residuals(match.state)
-    slopes = problem.cloud_residuals.slopes(match.state, problem.paths) * size
-    excess = _excess_weights(problem.cloud_residuals, len(rows))
-    variance, left = _residual_variance(match, rows, excess)
+    problem, size = match.problem, match.problem.scales.size
+    slopes, excess, variance, left = _linearised(match)
     across, values, turns = np.linalg.svd(slopes, full_matrices=False)
-    largest = float(values[0])
-    known = values > 1e-13 * largest
+    known = values > 1e-13 * values[0]
     # covariance of the rotated parameters at variance one: the identity where no point is weighed further
     middle = across[:, known].T @ (excess[:, None] * across[:, known]) / np.outer(values[known], values[known])
-    rank = int(np.count_nonzero(np.sqrt(variance * np.diag(middle)) < 1.0))
-    kept = turns[known]
-    scaled = variance * kept.T @ middle @ kept
+    scaled = variance * turns[known].T @ middle @ turns[known]
     deviations = np.sqrt(np.diag(scaled))
     deviations[np.any(np.abs(turns[~known]) > np.sqrt(np.finfo(float).eps), axis=0)] = np.inf
-    covariance = scaled * np.outer(size, size)
     factor = float(stdtrit(left, 0.975))
-    values_now = problem.values_of(match.design)
-    low, high = problem.scales.low, problem.scales.high
     estimates = []
-    for i, path in enumerate(problem.paths):
-        determined = bool(deviations[i] < IDENTIFIED_SPREAD)
-        deviation = float(deviations[i] * size[i])
-        value = float(values_now[i])
-        near = AT_BOUND * size[i]
+    for path, value, low, high, scale, spread in zip(
+        problem.paths,
+        problem.values_of(match.design),
+        problem.scales.low,
+        problem.scales.high,
+        size,
+        deviations,
+        strict=True,
+    ):
+        deviation, near = float(spread * scale), AT_BOUND * scale
         estimates.append(
             Estimate(
                 path=path,
-                value=value,
+                value=float(value),
                 deviation=deviation,
-                low=value - factor * deviation,
-                high=value + factor * deviation,
-                identified=determined,
-                at_bound=bool(value - low[i] < min(near, 0.1 * abs(value)) or high[i] - value < near),
+                low=float(value) - factor * deviation,
+                high=float(value) + factor * deviation,
+                identified=bool(spread < IDENTIFIED_SPREAD),
+                at_bound=bool(value - low < min(near, 0.1 * abs(value)) or high - value < near),
             )
         )
-    smallest = float(values[-1])
     return ParameterEstimates(
         estimates=tuple(estimates),
-        covariance=covariance,
-        rank=rank,
-        condition=largest / smallest if smallest > 0.0 else np.inf,
+        covariance=scaled * np.outer(size, size),
+        rank=int(np.count_nonzero(np.sqrt(variance * np.diag(middle)) < 1.0)),
+        condition=float(values[0] / values[-1]) if values[-1] > 0.0 else np.inf,
     )
 
 
@@ -118,46 +111,39 @@ def independent_share(places: Reals, residuals: Reals) -> float:
     return 1.0 / (1.0 + total)
 
 
-def _residual_variance(match: Match, rows: Reals, excess: Reals) -> tuple[float, float]:
-    """Variance of the residuals of independent points, in chords, and its degrees of freedom."""
-    cloud = match.problem.cloud_residuals
-    points, parameters = len(cloud.points), len(match.problem.paths)
-    count, taking = int(np.count_nonzero(cloud.roots)), cloud.roots > 0.0
-    places = neighbourhood_of(cloud.points, match.state.footpoints).places
-    independent = independent_share(places[taking], (rows / np.sqrt(excess))[:points][taking])
-    variance = float(np.sum(rows[:points] ** 2 / excess[:points])) / max(count - parameters, 1) / independent
-    return variance, max(independent * count - parameters, 1.0)
-
-
 def undetermined_parameters(match: Match, margin: float) -> list[str]:
     """Parameters without which the points determine all others, by a margin in standard deviations.
 
     Each in turn is the one with the largest share in the direction that is determined least (Golub and Van Loan 2013,
     section 5.5.7).
     """
-    problem = match.problem
-    rows = problem.cloud_residuals.residuals(match.state)
-    slopes = problem.cloud_residuals.slopes(match.state, problem.paths) * problem.scales.size
-    excess = _excess_weights(problem.cloud_residuals, len(rows))
-    least = margin * float(np.sqrt(_residual_variance(match, rows, excess)[0]))
-    triangle, kept = np.asarray(np.linalg.qr(slopes, mode="r")), np.arange(len(problem.paths))
+    slopes, _, variance, _ = _linearised(match)
+    least = margin * float(np.sqrt(variance))
+    triangle, kept = np.asarray(np.linalg.qr(slopes, mode="r")), np.arange(slopes.shape[1])
     while len(kept) > 1:
         _, values, turns = np.linalg.svd(triangle[:, kept])
         if values[-1] > max(least, values[0] / LARGEST_CONDITION):
             break
         kept = np.delete(kept, int(np.argmax(np.abs(turns[-1]))))
-    return [path for place, path in enumerate(problem.paths) if place not in kept]
+    return [path for place, path in enumerate(match.problem.paths) if place not in kept]
 
 
-def _excess_weights(cloud_residuals: CloudResiduals, count: int) -> Reals:
-    """How much more the points (count,) weigh in a search than their inverse variances; 1 for other rows."""
-    found = np.ones(count)
-    if cloud_residuals.precision is None:
-        return found
-    points = len(cloud_residuals.points)
-    found[:points] = cloud_residuals.roots**2 / np.where(
-        cloud_residuals.precision > 0.0, cloud_residuals.precision, 1.0
-    )
-    found[:points][found[:points] == 0.0] = 1.0
-    found[points : points + len(cloud_residuals.ends.near)] = found[cloud_residuals.ends.near]
-    return found
+def _linearised(match: Match) -> tuple[Reals, Reals, float, float]:
+    """Derivatives (m, k) of residuals by scaled parameters, and how much more these weigh than inverse variances (m,).
+
+    Then the variance of the residuals of independent points, in chords, and its degrees of freedom.
+    """
+    cloud, problem = match.problem.cloud_residuals, match.problem
+    rows, count = cloud.residuals(match.state), len(cloud.points)
+    slopes = cloud.slopes(match.state, problem.paths) * problem.scales.size
+    excess = np.ones(len(rows))
+    if cloud.precision is not None:
+        own = cloud.roots**2 / np.where(cloud.precision > 0.0, cloud.precision, 1.0)
+        excess[:count] = np.where(own == 0.0, 1.0, own)
+        excess[count : count + len(cloud.ends.near)] = excess[cloud.ends.near]
+    taking = cloud.roots > 0.0
+    places = neighbourhood_of(cloud.points, match.state.footpoints).places
+    share = independent_share(places[taking], (rows / np.sqrt(excess))[:count][taking])
+    points, parameters = int(np.count_nonzero(taking)), len(problem.paths)
+    variance = float(np.sum(rows[:count] ** 2 / excess[:count])) / max(points - parameters, 1) / share
+    return slopes, excess, variance, max(share * points - parameters, 1.0)
