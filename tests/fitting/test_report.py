@@ -9,8 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bladewright.fitting.assessment.report import LISTED_OUTLIERS, report, text
-from bladewright.fitting.assessment.result import Estimate, Fit, Motion
+from bladewright.fitting.assessment.result import LISTED_OUTLIERS, Estimate, Fit, Motion, report, text
 from machines import example
 
 DESIGN = example("turbine-section")

@@ -22,7 +22,7 @@ from bladewright.fitting.assessment.coverage import (
 )
 from bladewright.fitting.assessment.estimates import ParameterEstimates
 from bladewright.fitting.assessment.measurement import Measurement
-from bladewright.fitting.assessment.report import with_unit
+from bladewright.fitting.assessment.result import with_unit
 from bladewright.fitting.initial_guess.blade import AXES_HINT
 from bladewright.fitting.matching.noise import EXACT, LARGEST_GROUP, NEIGHBOURS, groups
 from bladewright.fitting.matching.search import Match
