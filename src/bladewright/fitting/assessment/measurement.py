@@ -1,7 +1,6 @@
 """The final measurement of a match: every point of the cloud against what the design builds."""
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -91,7 +90,11 @@ def measured(
         else:
             set_aside[rows] = np.where(far < off[rows], names, "")
         off[rows] = np.minimum(far, off[rows])
-    noise_estimate = _noise_without(points, footpoints, precision, set_aside == "")
+    rows = np.flatnonzero(set_aside == "")
+    noise_estimate = noise_of(points[rows], footpoints.part(rows), None if precision is None else precision[rows])
+    inliers = np.zeros(len(points), dtype=bool)
+    inliers[rows] = noise_estimate.inliers
+    noise_estimate = replace(noise_estimate, inliers=inliers)
     shape = ModelShape(design=None, sides=sides, edge_radius_margins=np.zeros(0), exact=exact)
     ends = blade_ends_of(points, footpoints, shape, noise_estimate.inliers)
     # points of end faces, few and far inside the sides, are outliers to these
@@ -103,18 +106,21 @@ def measured(
     edge = np.where(
         footpoints.u < EDGE_BAND, "leading edge", np.where(footpoints.u > 1.0 - EDGE_BAND, "trailing edge", "sides")
     )
-    edges = edges_of(built)
-    if "blunt" in edges:
-        footpoints, faces = on_sides(footpoints, edges)
-        for side, name in ((-1, "leading_edge"), (1, "trailing_edge")):
-            places = np.where(faces == side, name, places)
+    if "blunt" in edges_of(built):
+        footpoints, on_face = on_sides(footpoints, edges_of(built))
+        places = np.where(on_face < 0, "leading_edge", np.where(on_face > 0, "trailing_edge", places))
     places = np.where(set_aside == "", places, set_aside)
     past = np.any(footpoints.beyond != 0.0, axis=1) & (
         np.abs(np.sum(footpoints.miss * footpoints.beyond, axis=1)) > np.abs(footpoints.heights)
     )
     regions = np.where(past, "ends", edge).astype(f"<U{max(map(len, REGIONS))}")
-    if exact is not None and np.any(ends.on_end_face | faced):
-        _place_on_end_faces(points, ends.on_end_face | faced, built, deviations, places, regions, footpoints)
+    if isinstance(built, Blade):
+        for (name, end), face in zip(END_PARAMETERS.items(), built.design.ends, strict=True):
+            rows = np.flatnonzero((ends.on_end_face | faced) & (np.abs(footpoints.v - end) < 0.5))
+            outward = _off_wall(name, points[rows], built) * (1.0 if end else -1.0)
+            nearer = np.abs(outward) < np.abs(deviations[rows])
+            deviations[rows[nearer]] = outward[nearer]
+            places[rows[nearer]], regions[rows[nearer]] = face, "ends"
     return Measurement(
         places=places,
         footpoints=footpoints,
@@ -126,37 +132,15 @@ def measured(
     )
 
 
-def _noise_without(
-    points: Reals, footpoints: Footpoints, precision: Reals | None, taking_part: NDArray[np.bool_]
-) -> NoiseEstimate:
-    """The noise estimate of the points that take part, of which alone there are inliers."""
-    rows = np.flatnonzero(taking_part)
-    found = noise_of(points[rows], footpoints.part(rows), None if precision is None else precision[rows])
-    inliers = np.zeros(len(points), dtype=bool)
-    inliers[rows] = found.inliers
-    return replace(found, inliers=inliers)
-
-
-def _place_on_end_faces(
-    points: Reals, on_end_face: Any, built: Any, deviations: Reals, places: Any, regions: Any, footpoints: Footpoints
-) -> None:
-    """Gives points on end faces the place, the region and the distance from there."""
-    for (name, end), face in zip(END_PARAMETERS.items(), built.design.ends, strict=True):
-        rows = np.flatnonzero(on_end_face & (np.abs(footpoints.v - end) < 0.5))
-        if len(rows) == 0:
-            continue
-        wall = WallPoints(name=name, places=meridional_places(points[rows], built), spread=0.0)
-        outward = wall.distances(built.exact) * (1.0 if end else -1.0)
-        nearer = np.abs(outward) < np.abs(deviations[rows])
-        deviations[rows[nearer]] = outward[nearer]
-        places[rows[nearer]] = face
-        regions[rows[nearer]] = "ends"
-
-
 def meridional_places(points: Reals, built: Blade) -> Reals:
     """Places (n, 2) of points (n, 3) in (x, r), or in (x, z) of a cascade."""
     around = np.hypot(points[:, 1], points[:, 2]) if built.exact.mapping.revolved else points[:, 2]
     return np.stack([points[:, 0], around], axis=-1)
+
+
+def _off_wall(name: str, points: Reals, built: Blade) -> Reals:
+    """Signed distances (n,) [m] of points (n, 3) from hub or shroud."""
+    return WallPoints(name=name, places=meridional_places(points, built), spread=0.0).distances(built.exact)
 
 
 def off_walls(points: Reals, built: Blade) -> dict[str, Reals]:
@@ -170,8 +154,7 @@ def off_finished_faces(points: Reals, built: Blade) -> tuple[NDArray[np.str_], R
     off = {f"cut {name}" if name.endswith("_edge") else name: far for name, far in off_walls(points, built).items()}
     for wall, name in zip(END_PARAMETERS, built.design.ends, strict=True):
         if name not in off:
-            places = meridional_places(points, built)
-            off[name] = np.abs(WallPoints(name=wall, places=places, spread=0.0).distances(built.exact))
+            off[name] = np.abs(_off_wall(wall, points, built))
     for name, face in built.surfaces.items():
         if "_fillet" in name and isinstance(face, Surface):
             own = f"{name.partition('_')[0]} fillet"
