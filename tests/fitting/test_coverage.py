@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bladewright.fitting.assessment.coverage import bare_at_ends, bare_places, shape_bands, uncovered_edges
+from bladewright.fitting.assessment.coverage import past_points, shape_bands, uncovered_edges
 from bladewright.fitting.assessment.estimates import parameter_estimates
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import free_parameters_of
@@ -63,10 +63,10 @@ def test_a_blade_that_is_measured_in_fewer_sections_than_its_laws_have_points_is
     points += 2e-5 * draw.normal(size=points.shape)
     free = free_parameters_of("stagger[*]", None, started=True)
     found = searched(Task(points=points, weights=np.ones(len(points)), free=free, bounds={}), design, rounds=0)
-    _, _, v, bands = shape_bands(found, parameter_estimates(found))
-    assert bool(np.max(bands) > 1e-3 * found.model.chord) is said
+    bands = shape_bands(found, parameter_estimates(found))
+    assert bool(np.max(bands.half_widths) > 1e-3 * found.model.chord) is said
     # the rows themselves are known
-    assert np.max(bands[(v == 0.0) | (v == 1.0)]) < 1e-3 * found.model.chord
+    assert np.max(bands.half_widths[(bands.v == 0.0) | (bands.v == 1.0)]) < 1e-3 * found.model.chord
 
 
 @pytest.mark.parametrize(
@@ -88,7 +88,7 @@ def test_an_end_without_points_on_a_part_of_the_chord_is_bare_there_alone():
     free = free_parameters_of("stagger", None, started=True)
     found = searched(Task(points=points, weights=np.ones(len(points)), free=free, bounds={}), design, rounds=0)
     side, u, v = np.array([0, 1, 0, 1, 0]), np.array([0.3, 0.3, 0.1, 0.9, 0.3]), np.array([0.0, 0.1, 0.01, 0.01, 0.5])
-    assert bare_at_ends(found, side, u, v).tolist() == [True, True, False, False, False]
+    assert past_points(found, side, u, v)[1].tolist() == [True, True, False, False, False]
 
 
 def test_an_edge_without_points_on_a_part_of_the_span_is_bare_there_alone():
@@ -99,4 +99,4 @@ def test_an_edge_without_points_on_a_part_of_the_span_is_bare_there_alone():
     free = free_parameters_of("stagger", None, started=True)
     found = searched(Task(points=points, weights=np.ones(len(points)), free=free, bounds={}), design, rounds=0)
     side, u, v = np.array([0, 1, 0, 1, 0]), np.array([0.0, 0.05, 0.0, 0.05, 0.5]), np.array([0.1, 0.1, 0.9, 0.9, 0.1])
-    assert bare_places(found, side, u, v).tolist() == [True, True, True, False, False]
+    assert past_points(found, side, u, v)[0].tolist() == [True, True, True, False, False]

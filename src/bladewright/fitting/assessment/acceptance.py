@@ -12,8 +12,7 @@ from bladewright.fitting.assessment.coverage import (
     CONFIDENCE,
     EDGE_PARAMETERS,
     NORMAL_95,
-    bare_at_ends,
-    bare_places,
+    ShapeBands,
     foreign_edges,
     least_thickness,
     loose_ends,
@@ -24,6 +23,8 @@ from bladewright.fitting.assessment.estimates import ParameterEstimates
 from bladewright.fitting.assessment.measurement import Measurement
 from bladewright.fitting.assessment.result import with_unit
 from bladewright.fitting.initial_guess.blade import AXES_HINT
+from bladewright.fitting.matching.blade_ends import END_PARAMETERS
+from bladewright.fitting.matching.footpoints import Footpoints
 from bladewright.fitting.matching.noise import EXACT, LARGEST_GROUP, NEIGHBOURS, groups
 from bladewright.fitting.matching.search import Match
 from bladewright.nurbs.basis import Reals
@@ -83,93 +84,94 @@ def failures_of(
     measurement: Measurement, statistics: ParameterEstimates, match: Match, target: MatchTarget
 ) -> tuple[str, ...]:
     """Why a match does not pass, each a sentence."""
-    inliers, distances = measurement.inliers, measurement.distances
-    failures = []
-    if match.interrupted:
-        failures.append("the search was interrupted: this is the best design so far")
-    off = measurement.outliers - int(np.count_nonzero(measurement.faced))
+    inliers, distances, design = measurement.inliers, measurement.distances, match.design
+    outliers = ~inliers & ~measurement.faced & (measurement.set_aside == "")
+    off, open_ended = int(np.count_nonzero(outliers)), target.open and not match.interrupted
+    failures = ["the search was interrupted: this is the best design so far"] if match.interrupted else []
     if off > LARGEST_OUTLIER_SHARE * len(distances):
         failures.append(f"{off} of {len(distances)} points lie off the blade: is it one blade, and of this family?")
-    together, farthest = _outlying_group(measurement)
-    if together > LARGEST_GROUP * len(distances):
+    together = _largest_group(measurement.footpoints, outliers)
+    if len(together) > LARGEST_GROUP * len(distances):
         failures.append(
-            f"{together} of {len(distances)} points beside each other lie up to {with_unit(match.design, farthest, 2)} "
-            "off the blade: the shape is not found there, or they belong to something else; leave them out, or give a "
-            "start"
+            f"{len(together)} of {len(distances)} points beside each other lie up to "
+            f"{with_unit(design, np.max(distances[together]), 2)} off the blade: the shape is not found there, or they "
+            "belong to something else; leave them out, or give a start"
         )
-    inside, deepest = _inside(measurement)
-    if target.open and binomtest(inside, max(off, 1), alternative="greater").pvalue < 1.0 - CONFIDENCE:
+    # points off a true surface lie to either side of it: the sign test (Dixon and Mood 1946)
+    inside = np.flatnonzero(outliers & (measurement.deviations < 0.0))
+    if target.open and binomtest(len(inside), max(off, 1), alternative="greater").pvalue < 1.0 - CONFIDENCE:
         failures.append(
-            f"{inside} of {off} outliers lie inside the blade, up to {with_unit(match.design, deepest, 2)} from its "
-            "sides: is the shape not found there, or the blade worn? Leave them out, give a start, or state a tolerance"
+            f"{len(inside)} of {off} outliers lie inside the blade, up to "
+            f"{with_unit(design, np.max(distances[inside]), 2)} from its sides: is the shape not found there, or the "
+            "blade worn? Leave them out, give a start, or state a tolerance"
         )
     worst = int(np.flatnonzero(inliers)[np.argmax(distances[inliers])])
     if target.tolerance is not None and distances[worst] > target.tolerance:
         failures.append(
-            f"the largest deviation is {with_unit(match.design, distances[worst], 4)} "
-            f"({measurement.regions[worst]}, point {worst}), and {with_unit(match.design, target.tolerance, 4)} were "
-            "asked for"
+            f"the largest deviation is {with_unit(design, distances[worst], 4)} ({measurement.regions[worst]}, point "
+            f"{worst}), and {with_unit(design, target.tolerance, 4)} were asked for"
         )
     coarse = [] if target.tolerance is not None else _too_coarse(distances[inliers], match, target)
     failures += coarse
-    known = len(statistics.estimates) - _unknown_ends(statistics, match)
-    if target.open and not match.interrupted and statistics.rank < known:
+    # parameters of ends that no row of points shows are a note
+    unknown = [each.path for each in statistics.estimates if not each.identified] if loose_ends(match) else []
+    known = len(statistics.estimates) - sum(path.startswith(("channel.", "flow_path.")) for path in unknown)
+    if open_ended and statistics.rank < known:
         failures.append(
             f"the points determine {statistics.rank} of the {len(statistics.estimates)} parameters: give more points, "
             "a number of parameters, or a tolerance"
         )
     # what a match that is not found misses widens its bands
-    if target.open and not match.interrupted and not coarse:
-        failures += _not_shown(statistics, match)
-    failures += _partly_shown(match)
-    return tuple(failures)
+    if open_ended and not coarse:
+        failures += _not_shown(shape_bands(match, statistics), match)
+    return (*failures, *_partly_shown(match))
 
 
-def _outlying_group(measurement: Measurement) -> tuple[int, float]:
-    """Number of points in the largest group of outliers beside each other, and its largest distance [m].
+def _largest_group(feet: Footpoints, outliers: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """The largest group of outliers (n,) beside each other, where there may be one that is too large.
 
     Outliers scatter; a part of the blade that is not found does not.
     """
-    feet, outlier = measurement.footpoints, ~measurement.inliers & ~measurement.faced & (measurement.set_aside == "")
-    points, rows = feet.points + feet.miss, np.flatnonzero(outlier)
+    points, rows = feet.points + feet.miss, np.flatnonzero(outliers)
     if len(rows) <= LARGEST_GROUP * len(points):
-        return 0, 0.0
+        return rows[:0]
     _, index = cKDTree(points).query(points[rows], k=NEIGHBOURS[points.shape[1]] + 1)
-    labels = groups(outlier[index], (np.cumsum(outlier) - 1)[index])
-    largest = rows[labels == np.argmax(np.bincount(labels))]
-    return len(largest), float(np.max(measurement.distances[largest]))
+    labels = groups(outliers[index], (np.cumsum(outliers) - 1)[index])
+    return rows[labels == np.argmax(np.bincount(labels))]
 
 
-def _inside(measurement: Measurement) -> tuple[int, float]:
-    """Number of outliers inside the sides, and how far the deepest is [m].
+def _limits(bands: ShapeBands, match: Match) -> tuple[Reals, NDArray[np.bool_]]:
+    """How well the shape is to be known at places (n,) where nothing is asked [m], and where it is no failure if not.
 
-    Points off a surface lie to either side of it, or in front of it; behind it only where it is not the true one. So
-    many of them come by chance by the sign test (Dixon and Mood 1946).
+    That is at an edge, and at an end, past all points there, where elsewhere along it the shape is known.
     """
-    behind = ~measurement.inliers & ~measurement.faced & (measurement.set_aside == "") & (measurement.deviations < 0.0)
-    return int(np.count_nonzero(behind)), float(np.max(measurement.distances[behind], initial=0.0))
+    sides, edges = (each * match.model.chord for each in GROSS_DEVIATION)
+    known = bands.half_widths <= edges
+    at_edge, at_end = np.zeros_like(known), np.zeros_like(known)
+    for end in EDGE_PARAMETERS.values():
+        at_edge |= (np.abs(bands.u - end) < BETWEEN_EDGES) & np.any(known[bands.u == end])
+        at_end |= (np.abs(bands.v - end) < 0.5) & np.any(known[bands.v == end])
+    bare = (bands.past_edge & at_edge) | (bands.past_end & at_end & known)
+    return np.where(np.minimum(bands.u, 1.0 - bands.u) < BETWEEN_EDGES, edges, sides), bare
 
 
-def _not_shown(statistics: ParameterEstimates, match: Match) -> list[str]:
-    """Where a side, an edge or an end is known less well than is trusted, and than one point there would show it.
-
-    Where an edge or an end that is known elsewhere has no points, that is a note (`_bare_notes`).
-    """
+def _not_shown(bands: ShapeBands, match: Match) -> list[str]:
+    """Where a side, an edge or an end is known less well than is trusted, and than one point there would show it."""
     chord, one_point = match.model.chord, NORMAL_95 * match.noise_estimate.noise
-    ends, sides, edges = (max(each * chord, one_point) for each in (KNOWN_END, *GROSS_DEVIATION))
-    side, u, v, half_widths = shape_bands(match, statistics)
-    limits = np.where(np.minimum(u, 1.0 - u) < BETWEEN_EDGES, edges, sides)
-    limits[_bare(match, side, u, v, half_widths)] = np.inf
-    worst = int(np.argmax(half_widths / limits))
+    limits, bare = _limits(bands, match)
+    limits = np.where(bare, np.inf, np.maximum(limits, one_point))
+    worst = int(np.argmax(bands.half_widths / limits))
     found = []
-    if half_widths[worst] > limits[worst]:
-        place = f"u = {u[worst]:.2g}" + ("" if match.state.shape.exact is None else f", v = {v[worst]:.2g}")
-        known = f"known there to {with_unit(match.design, float(half_widths[worst]), 2)} either way (95 %)"
+    if bands.half_widths[worst] > limits[worst]:
+        place = f"u = {bands.u[worst]:.2g}"
+        place += "" if match.state.shape.exact is None else f", v = {bands.v[worst]:.2g}"
         found.append(
-            f"the points do not show the {SIDES[side[worst]]} side at {place}: it is {known}, and "
+            f"the points do not show the {SIDES[bands.side[worst]]} side at {place}: it is known there to "
+            f"{with_unit(match.design, bands.half_widths[worst], 2)} either way (95 %), and "
             f"{100 * limits[worst] / chord:.2g} % of the chord are allowed: is it a whole blade? Give more points "
             "there, a start, a number of parameters or a tolerance"
         )
+    ends = max(KNOWN_END * chord, one_point)
     unknown = {name: gap for name, gap in loose_ends(match).items() if gap > ends}
     if unknown:
         found.append(
@@ -179,45 +181,22 @@ def _not_shown(statistics: ParameterEstimates, match: Match) -> list[str]:
     return found
 
 
-def _bare(match: Match, side: NDArray[np.intp], u: Reals, v: Reals, half_widths: Reals) -> NDArray[np.bool_]:
-    """Whether places (n,) lie at an edge past all points there, which elsewhere along the span is known.
-
-    Or at an end past all points there, which elsewhere along the chord is known; and they as well as an edge is to be.
-    """
-    known = half_widths <= GROSS_DEVIATION[1] * match.model.chord
-    at_edge, at_end = np.zeros_like(known), np.zeros_like(known)
-    for end in EDGE_PARAMETERS.values():
-        at_edge |= (np.abs(u - end) < BETWEEN_EDGES) & np.any(known[u == end])
-        at_end |= (np.abs(v - end) < 0.5) & np.any(known[v == end])
-    return np.asarray((bare_places(match, side, u, v) & at_edge) | (bare_at_ends(match, side, u, v) & at_end & known))
-
-
-def _bare_notes(statistics: ParameterEstimates, match: Match) -> list[str]:
+def _bare_notes(bands: ShapeBands, match: Match) -> list[str]:
     """Edges and ends without points on a part of the blade, where they are known less well than is trusted."""
-    side, u, v, half_widths = shape_bands(match, statistics)
-    near = np.minimum(u, 1.0 - u) < BETWEEN_EDGES
-    limits = np.where(near, GROSS_DEVIATION[1], GROSS_DEVIATION[0]) * match.model.chord
-    bare = _bare(match, side, u, v, half_widths) & (half_widths > limits)
+    limits, bare = _limits(bands, match)
+    near = np.minimum(bands.u, 1.0 - bands.u) < BETWEEN_EDGES
+    edges = [(name, np.abs(bands.u - end) < BETWEEN_EDGES, "v") for name, end in EDGE_PARAMETERS.items()]
+    ends = [(name, ~near & (np.abs(bands.v - end) < 0.5), "u") for name, end in END_PARAMETERS.items()]
     found = []
-    edges = {name: (np.abs(u - end) < BETWEEN_EDGES, v, "v") for name, end in EDGE_PARAMETERS.items()}
-    ends = {name: (~near & (np.abs(v - end) < 0.5), u, "u") for name, end in (("hub", 0.0), ("shroud", 1.0))}
-    for name, (there, along, letter) in (edges | ends).items():
-        rows = np.flatnonzero(bare & there)
+    for name, there, letter in edges + ends:
+        rows = np.flatnonzero(bare & (bands.half_widths > limits) & there)
         if len(rows):
-            known = with_unit(match.design, float(np.max(half_widths[rows])), 2)
+            along, known = getattr(bands, letter)[rows], with_unit(match.design, np.max(bands.half_widths[rows]), 2)
             found.append(
-                f"no point shows the {name} from {letter} = {min(along[rows]):.2g} to {max(along[rows]):.2g}: it is "
-                f"known there to {known} either way (95 %)"
+                f"no point shows the {name} from {letter} = {min(along):.2g} to {max(along):.2g}: it is known there to "
+                f"{known} either way (95 %)"
             )
     return found
-
-
-def _unknown_ends(statistics: ParameterEstimates, match: Match) -> int:
-    """Number of parameters that are not determined because no row of points shows where the blade ends: a note."""
-    if not loose_ends(match):
-        return 0
-    unknown = (each.path for each in statistics.estimates if not each.identified)
-    return sum(path.startswith(("channel.", "flow_path.")) for path in unknown)
 
 
 def _too_coarse(kept: Reals, match: Match, target: MatchTarget) -> list[str]:
@@ -248,10 +227,15 @@ def _not_found_message(match: Match) -> str:
 
 def _partly_shown(match: Match) -> list[str]:
     """Why the points must be those of a part of a blade only, if anything shows it."""
+    feet, thin = match.state.footpoints, least_thickness(match)
+    between = feet.side[match.rows & (np.minimum(feet.u, 1.0 - feet.u) > BETWEEN_EDGES)]
+    shares = np.bincount(between, minlength=2) / max(len(between), 1)
     found = []
-    bare, thin = _bare_side(match), least_thickness(match)
-    if bare:
-        found.append(f"hardly a point lies on the {bare} side: is it one side of a blade alone? Give points of both")
+    if len(between) and np.min(shares) < MIN_SIDE_SHARE:
+        found.append(
+            f"hardly a point lies on the {SIDES[np.argmin(shares)]} side: is it one side of a blade alone? Give points "
+            "of both"
+        )
     elif thin < SHEET_THICKNESS * match.model.chord:
         found.append(
             f"the blade is a sheet, no more than {with_unit(match.design, thin)} thick at a place of its span: is it "
@@ -264,16 +248,6 @@ def _partly_shown(match: Match) -> list[str]:
         if share > HALF_BLADE_WIDTH
     ]
     return found
-
-
-def _bare_side(match: Match) -> str:
-    """The side of a blade that has hardly a point between its edges, if one has."""
-    footpoints = match.state.footpoints
-    between = match.rows & (footpoints.u > BETWEEN_EDGES) & (footpoints.u < 1.0 - BETWEEN_EDGES)
-    shares = {
-        name: np.mean(footpoints.side[between] == side) if np.any(between) else 1.0 for side, name in enumerate(SIDES)
-    }
-    return next((name for name, share in shares.items() if share < MIN_SIDE_SHARE), "")
 
 
 def _loose_ends_message(match: Match, ends: Mapping[str, float]) -> str:
@@ -311,19 +285,15 @@ def notes_of(
         for name, width in foreign_edges(match).items()
     ]
     if target.open and not match.interrupted:
-        sentences += _bare_notes(statistics, match)
+        sentences += _bare_notes(shape_bands(match, statistics), match)
     loose = loose_ends(match)
     if loose:
         sentences.append(_loose_ends_message(match, loose))
-    unknown = [each.path for each in statistics.estimates if not each.identified]
-    if unknown:
-        sentences.append(f"the cloud does not determine {_listed(unknown)}")
-    bound = [each.path for each in statistics.estimates if each.at_bound]
-    if bound:
-        sentences.append(f"on a bound: {_listed(bound)}")
+    doubtful = {
+        "the cloud does not determine": [each.path for each in statistics.estimates if not each.identified],
+        "on a bound:": [each.path for each in statistics.estimates if each.at_bound],
+    }
+    for words, names in doubtful.items():
+        more = f" and {len(names) - LISTED_NAMES} more" if len(names) > LISTED_NAMES else ""
+        sentences += [f"{words} {', '.join(names[:LISTED_NAMES])}{more}"] if names else []
     return tuple(sentences)
-
-
-def _listed(names: list[str]) -> str:
-    more = f" and {len(names) - LISTED_NAMES} more" if len(names) > LISTED_NAMES else ""
-    return f"{', '.join(names[:LISTED_NAMES])}{more}"

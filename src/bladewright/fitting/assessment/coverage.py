@@ -1,6 +1,7 @@
 """What a cloud shows of a blade: its sides between the points, ends without a row, bare and cut edges."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,11 +12,12 @@ from scipy.special import fdtri, ndtri
 from bladewright.fitting.assessment.estimates import ParameterEstimates
 from bladewright.fitting.free_parameters import parameters_of_curve
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS
-from bladewright.fitting.matching.footpoints import Footpoints, Side, footpoints_at
+from bladewright.fitting.matching.footpoints import Side, footpoints_at
 from bladewright.fitting.matching.noise import EXACT
 from bladewright.fitting.matching.search import Match
 from bladewright.numerics.robust import DEVIATION_OVER_MEDIAN
 from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.curvature import curvature, surface_curvature
 from bladewright.nurbs.curve import Curve
 
 ROW_SPREAD_OF_NOISE = 2.0
@@ -25,8 +27,8 @@ WIDTH_OVER_SPREAD = 4.0 / DEVIATION_OVER_MEDIAN
 """width of evenly scattered values over the deviation that the median of their distances from the middle tells"""
 EDGE_PARAMETERS = {"leading edge": 0.0, "trailing edge": 1.0}
 """u of the two edges"""
-SPAN_PARTS = 5
-"""parts of the span in each of which both sides are looked at"""
+PARTS = 5
+"""parts of the span, and of the chord, in each of which both sides are looked at"""
 COVERED_SHARE = 0.5
 """share of these parts that must have a point on the edge's arc; below it the edge is uncovered."""
 THICKNESS_SAMPLES = 25
@@ -47,6 +49,21 @@ NORMAL_95 = float(ndtri(0.975))
 """standard deviations to either side within which 95 % of normal errors are [-]"""
 CONFIDENCE = 0.999
 """with which points are nearer to a face than to a round edge: by the ratio of their variances (Fisher 1925) [-]"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ShapeBands:
+    """How well the shape is known at n places all over a design."""
+
+    side: NDArray[np.intp]
+    u: Reals
+    v: Reals
+    half_widths: Reals
+    """(n,) half the 95 % intervals along the normals [m]"""
+    past_edge: NDArray[np.bool_]
+    """(n,) whether a place is further along its side than all points of that part of the span"""
+    past_end: NDArray[np.bool_]
+    """(n,) whether a place is nearer to an end than all points of that part of the chord"""
 
 
 def loose_ends(match: Match) -> dict[str, float]:
@@ -82,9 +99,13 @@ def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:
     if not match.model.rounded:
         return {}
     footpoints, sides = match.state.footpoints, match.state.shape.sides
+    part = _part_of(footpoints.side, footpoints.v)
     uncovered = {}
     for name, end in EDGE_PARAMETERS.items():
-        nearest = _nearest(footpoints, match.rows, end)
+        away = np.where(match.rows, np.abs(footpoints.u - end), np.inf)
+        order = np.argsort(away, kind="stable")
+        nearest = order[np.unique(part[order], return_index=True)[1]]
+        nearest = nearest[np.isfinite(away[nearest])]
         if len(nearest) == 0 or not match.problem.cloud_residuals.overhang.looks_at(end):
             continue
         side, u, v = footpoints.side[nearest], footpoints.u[nearest], footpoints.v[nearest]
@@ -98,11 +119,10 @@ def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:
     return uncovered
 
 
-def shape_bands(match: Match, statistics: ParameterEstimates) -> tuple[NDArray[np.intp], Reals, Reals, Reals]:
-    """Sides, u and v (n,) of places all over a design, and half the 95 % intervals along the normals there [m].
+def shape_bands(match: Match, statistics: ParameterEstimates) -> ShapeBands:
+    """How well the shape is known, by the derivatives of places by the free parameters, and these' covariance.
 
-    By the derivatives of places by the free parameters, and these parameters' covariance. Reference: Bates and Watts
-    1988, section 2.3.2 (inference bands for the expected response).
+    Reference: Bates and Watts 1988, section 2.3.2 (inference bands for the expected response).
     """
     dimension = match.problem.cloud_residuals.points.shape[1]
     along, across = PLACES[dimension]
@@ -111,30 +131,37 @@ def shape_bands(match: Match, statistics: ParameterEstimates) -> tuple[NDArray[n
     at = footpoints_at(np.zeros((len(u), dimension)), match.state.shape.sides, side, u, v)
     slopes = match.model.along(match.state.shape, at, at.normals, match.problem.paths)
     variances = np.einsum("nk,nk->n", slopes @ statistics.covariance, slopes)
-    return side, u, v, NORMAL_95 * np.sqrt(np.maximum(variances, 0.0))
+    past_edge, past_end = past_points(match, side, u, v)
+    return ShapeBands(
+        side=side,
+        u=u,
+        v=v,
+        half_widths=NORMAL_95 * np.sqrt(np.maximum(variances, 0.0)),
+        past_edge=past_edge,
+        past_end=past_end,
+    )
 
 
-def bare_places(match: Match, side: NDArray[np.intp], u: Reals, v: Reals) -> NDArray[np.bool_]:
-    """Whether places (n,) are further along a side than all points of their part of the span, outliers too."""
-    feet = match.state.footpoints
-    return _past_points(feet.side, feet.v, feet.u, side, v, u)
+def past_points(
+    match: Match, side: NDArray[np.intp], u: Reals, v: Reals
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Whether places (n,) lie past all points of their side, outliers too: along the chord, and along the span.
+
+    Compared are points of the same of five parts of the span, and of the chord.
+    """
+    feet, found = match.state.footpoints, []
+    for at, across, own, own_across in ((u, v, feet.u, feet.v), (v, u, feet.v, feet.u)):
+        low, high = (np.full(2 * PARTS, end) for end in (np.inf, -np.inf))
+        np.minimum.at(low, _part_of(feet.side, own_across), own)
+        np.maximum.at(high, _part_of(feet.side, own_across), own)
+        part = _part_of(side, across)
+        found.append((at < low[part]) | (at > high[part]))
+    return found[0], found[1]
 
 
-def bare_at_ends(match: Match, side: NDArray[np.intp], u: Reals, v: Reals) -> NDArray[np.bool_]:
-    """Whether places (n,) are nearer to an end of the blade than all points of their part of the chord."""
-    feet = match.state.footpoints
-    return _past_points(feet.side, feet.u, feet.v, side, u, v)
-
-
-def _past_points(
-    own_side: NDArray[np.intp], own_part: Reals, own: Reals, side: NDArray[np.intp], part: Reals, at: Reals
-) -> NDArray[np.bool_]:
-    """Whether places (n,) lie past all points (m,) of the same side and of the same of `SPAN_PARTS` equal parts."""
-    rows, places = (each * SPAN_PARTS + _part_of_span(along) for each, along in ((own_side, own_part), (side, part)))
-    low, high = (np.full(2 * SPAN_PARTS, end) for end in (np.inf, -np.inf))
-    np.minimum.at(low, rows, own)
-    np.maximum.at(high, rows, own)
-    return np.asarray((at < low[places]) | (at > high[places]))
+def _part_of(side: NDArray[np.intp], along: Reals) -> NDArray[np.intp]:
+    """Numbers (n,) of the parts of both sides in which places are."""
+    return side * PARTS + np.minimum((PARTS * along).astype(np.intp), PARTS - 1)
 
 
 def least_thickness(match: Match) -> float:
@@ -144,27 +171,13 @@ def least_thickness(match: Match) -> float:
     return min(_thickness(match.state.shape.sides, v) for v in (0.1, 0.3, 0.5, 0.7, 0.9))
 
 
-def _nearest(footpoints: Footpoints, rows: NDArray[np.bool_], end: float) -> NDArray[np.intp]:
-    """For each side and part of the span the point that is nearest to an edge."""
-    away = np.where(rows, np.abs(footpoints.u - end), np.inf)
-    part = _part_of_span(footpoints.v) + SPAN_PARTS * footpoints.side
-    found = [np.flatnonzero(part == each)[np.argmin(away[part == each])] for each in np.unique(part)]
-    return np.array([each for each in found if np.isfinite(away[each])], dtype=np.intp)
-
-
-def _part_of_span(v: Reals) -> NDArray[np.intp]:
-    return np.minimum((SPAN_PARTS * v).astype(np.intp), SPAN_PARTS - 1)
-
-
-def _thickness(sides: tuple[Side, ...], v: float) -> float:
+def _thickness(sides: Sequence[Side], v: float) -> float:
     u = np.linspace(0.0, 1.0, THICKNESS_SAMPLES)
-    upper, lower = (
-        _places(sides, np.full(THICKNESS_SAMPLES, side), u, np.full(THICKNESS_SAMPLES, v)) for side in (0, 1)
-    )
+    upper, lower = (_places(sides, np.full(len(u), side), u, np.full(len(u), v)) for side in (0, 1))
     return float(np.sqrt(np.max(np.sum((upper - lower) ** 2, axis=-1))))
 
 
-def _places(sides: tuple[Side, ...], side: NDArray[np.intp], u: Reals, v: Reals) -> Reals:
+def _places(sides: Sequence[Side], side: NDArray[np.intp], u: Reals, v: Reals) -> Reals:
     none = np.zeros((len(u), np.real(sides[0].control_points).shape[-1]))
     return footpoints_at(none, sides, side, u, v).points
 
@@ -179,18 +192,21 @@ def foreign_edges(match: Match) -> dict[str, float]:
     if not match.model.rounded:
         return {}
     points, feet = match.problem.cloud_residuals.points[match.rows], match.state.footpoints.part(match.rows)
-    found = {}
+    sides, found = match.state.shape.sides, {}
     for name, end in EDGE_PARAMETERS.items():
-        side, at_end = np.zeros(len(points), dtype=np.intp), np.full(len(points), end)
-        edge = footpoints_at(points, match.state.shape.sides, side, at_end, feet.v)
+        upper_side, at_end = np.zeros(len(points), dtype=np.intp), np.full(len(points), end)
+        edge = footpoints_at(points, sides, upper_side, at_end, feet.v)
         inside = np.abs(at_end - INSIDE)
-        upper, lower = (footpoints_at(points, match.state.shape.sides, side + k, inside, feet.v) for k in (0, 1))
-        across = upper.points - lower.points
+        across = _places(sides, upper_side, inside, feet.v) - _places(sides, 1 - upper_side, inside, feet.v)
         across -= np.sum(across * edge.normals, axis=-1)[:, None] * edge.normals
         across /= np.sqrt(np.sum(across**2, axis=-1))[:, None]
         along, height = (np.sum(edge.miss * each, axis=-1) for each in (edge.normals, across))
-        radius = _radius(match.state.shape.sides[0], end, float(np.median(feet.v)))
-        rows = np.flatnonzero((along > -REACH * radius) & (np.abs(feet.u - end) < 0.5))
+        if isinstance(sides[0], Curve):
+            bends = [curvature(sides[0], end)]
+        else:
+            principal = surface_curvature(sides[0], end, np.median(feet.v))
+            bends = [principal.minimum, principal.maximum]
+        rows = np.flatnonzero((along * float(np.max(np.abs(bends))) > -REACH) & (np.abs(feet.u - end) < 0.5))
         # place, half width and turn of a face, and the slopes of both sides; place and radius of an arc, and these
         unknowns, round_unknowns = 6, 5
         if len(rows) <= 2 * unknowns:
@@ -202,18 +218,6 @@ def foreign_edges(match: Match) -> dict[str, float]:
         if all(other / count * free > fdtri(count, free, CONFIDENCE) * left for other, count in others):
             found[name] = width
     return found
-
-
-def _radius(side: Side, end: float, v: float) -> float:
-    """The radius of curvature along a section at an edge [m]."""
-    at = np.array([end])
-    if isinstance(side, Curve):
-        first, second = (np.asarray(side.derivative(at, order))[0] for order in (1, 2))
-    else:
-        first, second = (np.asarray(side.derivative(at, np.array([v]), order, 0))[0] for order in (1, 2))
-    speed = float(first @ first)
-    bend = speed * float(second @ second) - float(first @ second) ** 2
-    return speed**1.5 / max(float(np.sqrt(max(bend, 0.0))), 1e-300)
 
 
 def _face(along: Reals, height: Reals) -> tuple[float, float]:
@@ -230,9 +234,8 @@ def _face(along: Reals, height: Reals) -> tuple[float, float]:
             found.append(np.hypot(behind - way, above - slope * way))
         return np.asarray(np.min(found, axis=0))
 
-    fits = [_least(distances, along, height, (share, 0.0, 0.1, 0.1), (0.8, 1.0, 1.0)) for share in SHARES]
-    best = min(fits, key=lambda each: float(each.cost))
-    return 2.0 * float(best.x[2]), 2.0 * float(best.cost)
+    found = _nearest(distances, along, height, (0.0, 0.1, 0.1), (0.8, 1.0, 1.0))
+    return 2.0 * float(found.x[2]), 2.0 * float(found.cost)
 
 
 def _arc(along: Reals, height: Reals) -> float:
@@ -246,16 +249,18 @@ def _arc(along: Reals, height: Reals) -> float:
         above = ahead * np.sin(angle) + np.abs(off) * np.cos(angle)
         return np.asarray(np.where(behind < 0.0, np.hypot(ahead, off), above) - radius)
 
-    fits = [_least(distances, along, height, (share, 0.1, 0.1), (1.0, 1.0)) for share in SHARES]
-    return 2.0 * min(float(each.cost) for each in fits)
+    return 2.0 * float(_nearest(distances, along, height, (0.1, 0.1), (1.0, 1.0)).cost)
 
 
-def _least(
+def _nearest(
     distances: Callable[[Reals], Reals], along: Reals, height: Reals, first: Sequence[float], most: Sequence[float]
 ) -> Any:
-    """The end, middle, width and more of a shape nearest to points (n,), from a first share of their height."""
-    wide = 0.5 * float(np.ptp(height))
-    scale, high = np.array([wide] * 3 + [1.0] * len(most)), np.array([np.inf] * 3 + list(most))
-    low = np.where(np.arange(len(high)) == 2, 0.0, -high)
-    start = [float(np.max(along)), float(np.mean(height)), first[0] * wide, *first[1:]]
-    return least_squares(distances, start, bounds=(low, high), x_scale=scale)
+    """The end, middle, width and more of a shape nearest to points (n,), from several first widths."""
+    wide, high = 0.5 * float(np.ptp(height)), np.array([np.inf] * 3 + list(most))
+    scale, low = np.array([wide] * 3 + [1.0] * len(most)), np.where(np.arange(len(high)) == 2, 0.0, -high)
+    place = float(np.max(along)), float(np.mean(height))
+    starts = ([*place, share * wide, *first] for share in SHARES)
+    return min(
+        (least_squares(distances, start, bounds=(low, high), x_scale=scale) for start in starts),
+        key=lambda each: float(each.cost),
+    )
