@@ -8,7 +8,7 @@ what the noise needs (graduated non-convexity, Blake and Zisserman 1987): the fe
 prismatic blade along its span, take part before they could be taken for outliers.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -92,9 +92,17 @@ def registration(points: Reals, design: Design) -> tuple[Motion, tuple[str, ...]
         return found.miss, rows, np.concatenate([found.normals, found.beyond[past]])
 
     tried = (_rough(few, samples, normals, start) for start in _starts(few, samples))
-    _, nearest = min(tried, key=lambda each: each[0])
+    _, motion = min(tried, key=lambda each: each[0])
     some = cloud[random_subset(len(cloud), DECIDING_POINTS)]
-    motion = _descended(some, touching, nearest, extent)
+    width = FIRST_WIDTH * extent
+    for _ in range(60):
+        moved = motion(some)
+        contact = touching(moved)
+        needed = max(_noise_width(contact), LEAST_WIDTH * extent)
+        motion = composed(_step(moved, contact, width, extent), motion)
+        if width <= needed and np.max(np.abs(motion(some) - moved)) < LAST_STEP * extent:
+            break
+        width = max(needed, width / SHRINKING)
     return motion, _notes(motion(some), touching(motion(some)), extent, float(np.real(built.chord)))
 
 
@@ -143,20 +151,6 @@ def _rough(points: Reals, samples: Reals, normals: Reals, motion: Motion) -> tup
     # between samples only the distance from the tangent plane says how far a point is off
     aside = np.where(distances > spacing, distances, np.abs(np.sum(directions * miss, axis=1)))
     return float(np.mean(np.minimum(aside, FIRST_WIDTH * extent))), motion
-
-
-def _descended(points: Reals, contacts: Callable[[Reals], Contact], motion: Motion, extent: float) -> Motion:
-    """The motion of least robust distances near a first one."""
-    width = FIRST_WIDTH * extent
-    for _ in range(60):
-        moved = motion(points)
-        contact = contacts(moved)
-        needed = max(_noise_width(contact), LEAST_WIDTH * extent)
-        motion = composed(_step(moved, contact, width, extent), motion)
-        if width <= needed and np.max(np.abs(motion(points) - moved)) < LAST_STEP * extent:
-            break
-        width = max(needed, width / SHRINKING)
-    return motion
 
 
 def _lengths(vectors: Reals) -> Reals:
