@@ -29,6 +29,8 @@ from bladewright.section.thickness.quartic import QuarticSpline
 from bladewright.section.thickness.wennerstrom import RATIOS, Wennerstrom
 from bladewright.section.wedge_diffuser import WedgeDiffuser
 
+ENDS: Reals = np.array([0.0, 1.0])
+"""chord fractions of leading and trailing edge"""
 CAMBER_ANGLES = tuple(
     CamberAngle(camber_angle=(0.0,) * 4, half_thickness=(0.02,) * 5, trailing_edge=edge)
     for edge in ("round", "blunt", "sharp")
@@ -38,28 +40,23 @@ CAMBER_ANGLES = tuple(
 
 def camber_angle_parts(shape: SectionShape, like: CamberAngle | None) -> Sequence[CamberAngle]:
     """The parts nearest to a section by least squares of its angle and of its half thickness."""
-    return [_camber_angle(shape, each) for each in (CAMBER_ANGLES if like is None else [like])]
-
-
-def _camber_angle(shape: SectionShape, like: CamberAngle) -> CamberAngle:
+    half, found = shape.half(PLACES), []
     # fractions of the meridional extent
     fraction = PLACES - shape.camber(PLACES) * np.tan(shape.stagger)
-    rows = law_basis(len(like.camber_angle), np.clip(fraction, 0.0, 1.0))
-    angles = np.degrees(shape.stagger + np.linalg.lstsq(rows, shape.angles(PLACES), rcond=None)[0])
-    half = shape.half(PLACES)
-    outline = replace(like, half_thickness=(0.01,) * len(like.half_thickness)).outline(SINGLE_SECTION)
-    weights, places = (np.real(each.controls)[0] for each in (outline.weights, outline.places))
-    rows = law_basis(len(weights), np.linspace(0.0, 1.0, 2 * len(half)))
-    at, shares = rows @ places / (rows @ weights), rows * weights / (rows @ weights)[:, None]
-    free = shares[:, 1 : 1 + len(like.half_thickness)]
-    # beside a round edge the half thickness is far above what is left of it further on
-    limits = 0.1 * float(np.max(half)), 0.99 * HALF_THICKNESS.high
-    heights = lsq_linear(free, np.interp(at, fraction, half), bounds=limits).x
-    return replace(
-        like,
-        camber_angle=tuple(np.clip(angles, 0.99 * ANGLE.low, 0.99 * ANGLE.high).tolist()),
-        half_thickness=tuple(heights.tolist()),
-    )
+    for each in CAMBER_ANGLES if like is None else [like]:
+        rows = law_basis(len(each.camber_angle), np.clip(fraction, 0.0, 1.0))
+        angles = np.degrees(shape.stagger + np.linalg.lstsq(rows, shape.angles(PLACES), rcond=None)[0])
+        outline = replace(each, half_thickness=(0.01,) * len(each.half_thickness)).outline(SINGLE_SECTION)
+        weights, places = (np.real(law.controls)[0] for law in (outline.weights, outline.places))
+        rows = law_basis(len(weights), np.linspace(0.0, 1.0, 2 * len(half)))
+        at, shares = rows @ places / (rows @ weights), rows * weights / (rows @ weights)[:, None]
+        free = shares[:, 1 : 1 + len(each.half_thickness)]
+        # beside a round edge the half thickness is far above what is left of it further on
+        limits = 0.1 * float(np.max(half)), 0.99 * HALF_THICKNESS.high
+        heights = lsq_linear(free, np.interp(at, fraction, half), bounds=limits).x
+        clipped = np.clip(angles, 0.99 * ANGLE.low, 0.99 * ANGLE.high)
+        found.append(replace(each, camber_angle=tuple(clipped.tolist()), half_thickness=tuple(heights.tolist())))
+    return found
 
 
 _BODY: dict[str, Any] = {"maximum_thickness": 0.1, "maximum_thickness_at": 0.4}
@@ -86,17 +83,19 @@ LEAST_CURVATURE = 0.1
 
 def curvature_meanline_parts(shape: SectionShape, like: CurvatureMeanline | None) -> Sequence[CurvatureMeanline]:
     """The parts nearest to a section: its angles, the bends of its mean line, and its thickness."""
-    ends = np.degrees(np.clip(shape.stagger + shape.angles(np.array([0.0, 1.0])), -1.5, 1.5))
+    turned = abs(np.ptp(shape.angles(ENDS))) >= STRAIGHT
     found = []
     for each in CURVATURE_MEANLINES if like is None else [like]:
-        inner = [_number(place) for place in each.curvature_places]
+        inner = [_mean(place) for place in each.curvature_places]
         places = np.array([0.0, *inner, 1.0]) if inner else np.linspace(0.0, 1.0, len(each.curvature))
+        bends = shape.camber.deriv(2)(places) if turned else np.ones(len(places))
+        if each.curvature:
+            bends = np.maximum(bends / bends[np.argmax(bends**2)], LEAST_CURVATURE)
         found.append(
             replace(
                 each,
-                metal_angle_in=float(ends[0]),
-                metal_angle_out=float(ends[1]),
-                curvature=tuple(_curvatures(shape, places).tolist()) if each.curvature else (),
+                **_metal_angles(shape),
+                curvature=tuple(bends.tolist()),
                 curvature_places=tuple(inner),
                 thickness=replace(each.thickness, **_thickness(shape, each.thickness)),
                 thickness_multiplier=(0.0,) * len(each.thickness_multiplier),
@@ -105,26 +104,25 @@ def curvature_meanline_parts(shape: SectionShape, like: CurvatureMeanline | None
     return found
 
 
-def _curvatures(shape: SectionShape, places: Reals) -> Reals:
-    """The second derivative of the mean line at places, of its largest."""
-    bends = shape.camber.deriv(2)(places)
-    if abs(np.ptp(shape.angles(np.array([0.0, 1.0])))) < STRAIGHT:
-        return np.ones(len(places))
-    bends = bends / bends[np.argmax(bends**2)]
-    return np.asarray(np.maximum(bends, LEAST_CURVATURE))
+def _metal_angles(shape: SectionShape) -> dict[str, Any]:
+    first, last = np.degrees(np.clip(shape.stagger + shape.angles(ENDS), -1.5, 1.5))
+    return {"metal_angle_in": float(first), "metal_angle_out": float(last)}
 
 
 def _thickness(shape: SectionShape, law: Any) -> dict[str, Any]:
     """The fields of a thickness law that a section shows."""
-    maximum, at = shape.thickest
-    # a half thickness of an ellipse's radius of curvature b^2 / a, with a = ratio b
-    ends = [2.0 * radius * ratio for radius, ratio in zip(shape.radii, _ratios(law), strict=True)]
+    given, (maximum, at) = vars(law), shape.thickest
+    # the radius of curvature of an ellipse whose half height is b is b / ratio
+    ends = [
+        2.0 * r * _mean(given.get(f"{edge}_ratio") or usual)
+        for r, (edge, usual) in zip(shape.radii, RATIOS.items(), strict=True)
+    ]
     first, tail, last, end = (float(each) for each in shape.half(np.array([0.03, 0.85, 0.95, 0.985])))
-    known: dict[str, Any] = {
+    known = {
         "maximum_thickness": maximum,
         "maximum_thickness_at": float(np.clip(at, 0.15, 0.8)),
         "leading_edge_thickness": ends[0],
-        "trailing_edge_thickness": 2.0 * last if _field(law, "trailing_edge") == "blunt" else ends[1],
+        "trailing_edge_thickness": 2.0 * last if given.get("trailing_edge") == "blunt" else ends[1],
     }
     if isinstance(law, ModifiedNaca):
         # the radius of the leading edge is 1.1019 (thickness I / 6)^2 (NACA Report 492)
@@ -143,21 +141,10 @@ def _thickness(shape: SectionShape, law: Any) -> dict[str, Any]:
         }
     for name in ("leading_edge_thickness", "trailing_edge_thickness"):
         known[name] = float(np.clip(known[name], 0.02 * maximum, 0.6 * maximum))
-    return {name: value for name, value in known.items() if _field(law, name) is not None}
+    return {name: value for name, value in known.items() if given.get(name) is not None}
 
 
-def _ratios(law: Any) -> tuple[float, float]:
-    """Ratios of the axes of elliptic edges."""
-    given = (_field(law, f"{edge}_ratio") for edge in RATIOS)
-    first, last = (_number(ratio or usual) for ratio, usual in zip(given, RATIOS.values(), strict=True))
-    return first, last
-
-
-def _field(law: Any, name: str) -> Any:
-    return vars(law).get(name)
-
-
-def _number(law: Any) -> float:
+def _mean(law: Any) -> float:
     return float(np.mean(law_points(law)))
 
 
@@ -196,19 +183,14 @@ def suction_pressure_parts(shape: SectionShape, like: SuctionPressure | None) ->
 def _suction_pressure(shape: SectionShape, like: SuctionPressure, wedge: float) -> SuctionPressure:
     tail = shape.half(np.array([0.85, 0.95]))
     last = 2.0 * np.degrees(np.arctan((tail[0] - tail[1]) / 0.1))
-    ends = np.degrees(np.clip(shape.stagger + shape.angles(np.array([0.0, 1.0])), -1.5, 1.5))
     values: dict[str, Any] = {
         "stagger_angle": float(np.degrees(shape.stagger)),
         "leading_edge_wedge": wedge,
         "trailing_edge_wedge": float(np.clip(last, 2.0, 40.0)),
+        **_metal_angles(shape),
     }
-    for end, (edge, angle) in enumerate((("leading_edge", "metal_angle_in"), ("trailing_edge", "metal_angle_out"))):
-        values |= {
-            angle: float(ends[end]),
-            f"{edge}_radius": float(np.clip(shape.radii[end], 1e-3, 0.15)),
-            f"{edge}_stretch": 1.0,
-            f"{edge}_skew": 0.0,
-        }
+    for edge, radius in zip(("leading_edge", "trailing_edge"), shape.radii, strict=True):
+        values |= {f"{edge}_radius": float(np.clip(radius, 1e-3, 0.15)), f"{edge}_stretch": 1.0, f"{edge}_skew": 0.0}
     part = replace(like, **values)
     sides = (shape.upper, shape.lower) if part.suction_side == "upper" else (shape.lower, shape.upper)
     line = np.real(skeleton_of(part, SINGLE_SECTION))[0]
@@ -232,7 +214,7 @@ def _suction_pressure(shape: SectionShape, like: SuctionPressure, wedge: float) 
 
 
 def _places(given: Any, knots: Reals) -> Reals:
-    return np.array([_number(law) for law in given]) if given else default_places(knots)
+    return np.array([_mean(law) for law in given]) if given else default_places(knots)
 
 
 WEDGE_DIFFUSERS = (
@@ -288,22 +270,18 @@ PROFILES: tuple[Profile, ...] = (
 
 def profile_parts(shape: SectionShape, like: Profile | None) -> Sequence[Profile]:
     """The profiles nearest to a section, by its thickness, camber and stagger."""
-    return [_profile(shape, each) for each in (PROFILES if like is None else [like])]
-
-
-def _profile(shape: SectionShape, like: Profile) -> Profile:
     if isinstance(like, PointsProfile):
-        return through_points(shape, len(like.abscissas))
+        return [through_points(shape, len(like.abscissas))]
     maximum, _ = shape.thickest
     camber, position = shape.most_cambered
-    turning = float(np.degrees(-np.diff(shape.angles(np.array([0.0, 1.0])))[0]))
+    turning = float(np.degrees(-np.diff(shape.angles(ENDS))[0]))
     tail = float(shape.half(np.array([0.985]))[0])
     first, last = (float(np.clip(each, 5e-4, 0.2 * maximum)) for each in shape.radii)
-    values: dict[str, Any] = {
+    values = {
         "stagger_angle": float(np.degrees(shape.stagger)),
         "thickness": float(np.clip(maximum, 0.01, 0.39)),
         "camber": float(np.clip(camber, -0.25, 0.25)),
-        "camber_position": float(np.clip(position, 0.15, 0.25 if isinstance(like, Naca5) else 0.7)),
+        "camber_position": float(np.clip(position, 0.15, 0.7)),
         "lift_coefficient": float(np.clip(LIFT * camber, -2.5, 2.5)),
         "design_lift": float(np.clip(LIFT * camber, -1.5, 1.5)),
         "camber_angle": float(np.clip(turning, -110.0, 110.0)),
@@ -311,8 +289,14 @@ def _profile(shape: SectionShape, like: Profile) -> Profile:
         "trailing_edge_radius": last,
         "trailing_edge_thickness": float(np.clip(2.0 * tail / maximum, 0.01, 0.4)),
     }
-    known = {each.name for each in fields(like) if "unit" in each.metadata and getattr(like, each.name) is not None}
-    return replace(like, **{name: value for name, value in values.items() if name in known})
+    found = []
+    for each in PROFILES if like is None else [like]:
+        known = {f.name for f in fields(each) if "unit" in f.metadata and getattr(each, f.name) is not None}
+        changes = {name: value for name, value in values.items() if name in known}
+        if isinstance(each, Naca5):
+            changes["camber_position"] = min(changes["camber_position"], 0.25)
+        found.append(replace(each, **changes))
+    return found
 
 
 def through_points(shape: SectionShape, count: int) -> PointsProfile:
