@@ -33,10 +33,7 @@ LEAST_RADIUS = 0.6
 EDGE_POINTS = 4
 """points on an edge curve"""
 EDGE_OVERREACH = 0.06
-"""length by which an edge curve reaches past the walls, of its length; `EDGE_OVERREACH_LIKE` is how many times that
-where points of another curve say how far it reaches."""
-EDGE_OVERREACH_LIKE = 4.0
-"""the same where the points of another curve say how far it reaches, in multiples"""
+"""length by which an edge curve reaches past the walls, of its length"""
 OPPOSITE_CURVE = {"leading_edge": "trailing_edge", "trailing_edge": "leading_edge", "hub": "shroud", "shroud": "hub"}
 """the curve in whose place each stands when the flow comes from the other side"""
 CURVE_PLACES: Reals = np.linspace(0.0, 1.0, 201)
@@ -75,51 +72,50 @@ class ChannelCurves:
 
     def edge(self, name: str, metre: float) -> ThroughPoints:
         """An edge as a curve through a few points that reaches past both walls."""
-        line = _extended(self.values(name, CURVE_PLACES))
-        at = np.linspace(0.0, len(line) - 1.0, EDGE_POINTS)
-        return ThroughPoints(points=_points(_along(line, at), metre))
+        line = self._reaching_past_walls(name, EDGE_OVERREACH)
+        t = np.concatenate([[-EDGE_OVERREACH], CURVE_PLACES, [1.0 + EDGE_OVERREACH]])
+        at = np.linspace(t[0], t[-1], EDGE_POINTS)
+        return ThroughPoints(points=_points(np.stack([np.interp(at, t, axis) for axis in line.T], axis=-1), metre))
 
     def edge_like(self, name: str, curve: Any, metre: float) -> Meridian:
         """The edge with the points of another curve, in their places along the edge."""
-        if isinstance(curve, ThroughPoints):
-            own, field = curve.points, "points"
-        elif isinstance(curve, ControlPolygon):
-            own, field = curve.control_points, "control_points"
-        else:
+        if not isinstance(curve, ThroughPoints | ControlPolygon):
             raise FitError(
                 f"the {name} of `like` is given by corners or by a stacking: only points or control points are "
                 "fitted; give the design as start"
             )
-        given = metre * np.array([[float(np.real(each.x)), float(np.real(each.r))] for each in own])
-        line = _extended(self.values(name, CURVE_PLACES), EDGE_OVERREACH_LIKE)
+        given = metre * np.real(np.array(curve.given))
+        # how far it reaches past the walls, the given points say
+        line = self._reaching_past_walls(name, 1.0)
         # the coordinate in which the edge has its extent is held, the other is the edge's there
-        axis = 1 if np.ptp(given[:, 1]) >= np.ptp(given[:, 0]) else 0
-        order = np.argsort(line[:, axis])
-        if isinstance(curve, ThroughPoints):
-            free = np.interp(given[:, axis], line[order, axis], line[order, 1 - axis])
-        else:
+        held = 1 if np.ptp(given[:, 1]) >= np.ptp(given[:, 0]) else 0
+        order = np.argsort(line[:, held])
+        rows = np.eye(len(given))
+        if isinstance(curve, ControlPolygon):
             degree = min(len(given) - 1, curve.degree)
             rows = basis(uniform_knots(len(given), degree), degree, CURVE_PLACES)
-            wanted = np.interp(rows @ given[:, axis], line[order, axis], line[order, 1 - axis])
-            free = np.linalg.lstsq(rows, wanted, rcond=None)[0]
-        found = given.copy()
-        found[:, 1 - axis] = free
-        return replace(curve, **{field: _points(found, metre)})
+        wanted = np.interp(rows @ given[:, held], line[order, held], line[order, 1 - held])
+        given[:, 1 - held] = np.linalg.lstsq(rows, wanted, rcond=None)[0]
+        changes: dict[str, Any] = {"control_points" if curve.polygon else "points": _points(given, metre)}
+        return replace(curve, **changes)
+
+    def _reaching_past_walls(self, name: str, share: float) -> Reals:
+        """Points (n, 2) of an edge that is continued straight past both walls by a share of its length."""
+        line = self.values(name, CURVE_PLACES)
+        return _continued(line, np.full(2, share * cumulative_length(line)[-1]))
 
 
 def _wall(line: Reals, shares: Reals) -> Reals:
     """Points of a wall, a line (n, 2) continued straight by shares (2,) of it: as few as follow it."""
-    way = cumulative_length(line)
-    size = float(way[-1])
-    ends = shares[:, None] * size * _outward(line)
-    longer = np.concatenate([[line[0] + ends[0]], line, [line[-1] + ends[1]]])
+    size = float(cumulative_length(line)[-1])
+    longer = _continued(line, shares * size)
     along = cumulative_length(longer)
     low, high = along[1] - WALL_MARGIN * size, along[-2] + WALL_MARGIN * size
     rows = longer
     for count in WALL_COUNTS:
         at = np.concatenate([along[:1], np.linspace(max(low, 0.5 * along[1]), high, count), along[-1:]])
         at[-2] = min(at[-2], 0.5 * (along[-1] + along[-2]))
-        rows = np.stack([np.interp(at, along, longer[:, i]) for i in (0, 1)], axis=-1)
+        rows = np.stack([np.interp(at, along, axis) for axis in longer.T], axis=-1)
         curve = np.real(ThroughPoints(points=_points(rows, 1.0)).line(1.0).values(np.linspace(0.0, 1.0, 801)))
         if np.max(cKDTree(curve).query(line)[0]) <= WALL_DISTANCE * size:
             break
@@ -128,27 +124,20 @@ def _wall(line: Reals, shares: Reals) -> Reals:
 
 def _outward(line: Reals) -> Reals:
     """The directions (2, 2) in which a line leaves its ends."""
-    return np.stack([unit(line[0] - line[1]), unit(line[-1] - line[-2])])
+    return unit(np.stack([line[0] - line[1], line[-1] - line[-2]]))
+
+
+def _continued(line: Reals, lengths: Reals) -> Reals:
+    """A line (n, 2) that is continued straight past both ends by lengths (2,)."""
+    first, last = lengths[:, None] * _outward(line)
+    return np.concatenate([[line[0] + first], line, [line[-1] + last]])
 
 
 def _shares_off_axis(line: Reals, longest: float) -> Reals:
     """The shares (2,) of a line's length by which it may be continued at its ends, so as to keep off the axis."""
     fall = -float(cumulative_length(line)[-1]) * _outward(line)[:, 1]
-    radius = np.maximum(line[[0, -1], 1], 0.0)
-    return np.where(fall > 0.0, np.minimum(longest, LEAST_RADIUS * radius / np.where(fall > 0.0, fall, 1.0)), longest)
-
-
-def _extended(line: Reals, times: float = 1.0) -> Reals:
-    """A line (n, 2) that is continued straight past both ends."""
-    size = float(cumulative_length(line)[-1])
-    steps = times * EDGE_OVERREACH * size * np.linspace(0.0, 1.0, 13)[1:, None]
-    first, last = unit(line[0] - line[1]), unit(line[-1] - line[-2])
-    return np.concatenate([(line[0] + steps * first)[::-1], line, line[-1] + steps * last])
-
-
-def _along(line: Reals, at: Reals) -> Reals:
-    index = np.arange(len(line), dtype=np.float64)
-    return np.stack([np.interp(at, index, line[:, i]) for i in (0, 1)], axis=-1)
+    most = LEAST_RADIUS * np.maximum(line[[0, -1], 1], 0.0)
+    return np.minimum(longest, np.divide(most, fall, out=np.full(2, np.inf), where=fall > 0.0))
 
 
 def _points(rows: Reals | Sequence[Reals], metre: float) -> tuple[Point, ...]:
