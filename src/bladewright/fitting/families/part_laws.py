@@ -1,6 +1,5 @@
 """The laws of designs of one part, whose numbers of control points a match may choose: along the chord and the span."""
 
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import singledispatch
@@ -11,7 +10,7 @@ from scipy.interpolate import CubicSpline
 
 from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.blade.design.sectioned import SectionedBlade
-from bladewright.designs import Law, Point
+from bladewright.designs import Law, Point, value_at
 from bladewright.errors import DesignError
 from bladewright.fitting.families.section_shape import FINE_PLACES
 from bladewright.fitting.free_parameters import EDGES, WALLS, sliding_coordinate
@@ -62,6 +61,7 @@ class Chordwise:
     """whether only the ratios of its numbers count"""
     places: Callable[[int], Reals] | None = None
     """the places along the chord of all control points of a curve by their number; None where they are even"""
+    most: int = MOST_CHORDWISE
 
     def points(self, count: int) -> int:
         """How many control points a count stands for."""
@@ -82,6 +82,16 @@ class Chordwise:
             along = law_basis(points + first + last, at) @ self.places(points)
             at = np.interp(at, along, at)
         return law_basis(points + first + last, at)[:, first : first + points]
+
+    def embedding(self, count: int, other: int) -> Reals:
+        """Control points of the rows nearest to those of another count."""
+        if count == other:
+            return np.eye(self.points(count))
+        return np.asarray(np.linalg.lstsq(self.basis(count), self.basis(other), rcond=None)[0])
+
+
+ONE_LAW = Chordwise(fewest=1, most=1)
+"""a law along the span that belongs to no row"""
 
 
 @singledispatch
@@ -124,10 +134,6 @@ def _(part: SuctionPressure) -> dict[str, Chordwise]:
     }
 
 
-POSITIONS = ("leading_edge_theta", "leading_edge_y")
-"""where the leading edge of a blade stands"""
-
-
 @dataclass(frozen=True)
 class PartStructure:
     """Numbers of control points of the laws of a part, and of the position of a blade's leading edge."""
@@ -145,72 +151,58 @@ class PartStructure:
 class PartLaw(ResizableLaw):
     """A law along the span, or a row of them along the chord; its name is its path."""
 
-    row: Chordwise | None
+    row: Chordwise
     spanwise: bool
     """whether it may vary along the span"""
 
-    def grid(self, design: Any) -> list[Law]:
+    def laws(self, design: Any) -> list[Law]:
         """Its laws along the span, one for each control point along the chord."""
-        value = law_at(design, self.name)
-        return [value] if self.row is None else list(value)
+        value = value_at(design, self.name)
+        return [value] if self.row is ONE_LAW else list(value)
 
     def counts(self, structure: PartStructure) -> Counts:
         return structure.counts[self.name]
 
     def counts_of(self, design: Any) -> Counts:
         """Its numbers of control points in a design."""
-        laws = self.grid(design)
-        across = max((len(law_points(law)) for law in laws), default=1)
-        return 1 if self.row is None else self.row.count(len(laws)), across
+        laws = self.laws(design)
+        return self.row.count(len(laws)), max((len(law_points(law)) for law in laws), default=1)
 
     def resized(self, structure: PartStructure, counts: Counts) -> PartStructure:
         return PartStructure({**structure.counts, self.name: counts})
 
     def limits(self) -> tuple[Counts, Counts]:
-        most = MOST_SPAN if self.spanwise else 1
-        if self.row is None:
-            return (1, 1), (1, most)
-        return (0 if self.row.optional else self.row.fewest, 1), (MOST_CHORDWISE, most)
+        return (0 if self.row.optional else self.row.fewest, 1), (self.row.most, MOST_SPAN if self.spanwise else 1)
 
     def paths(self, design: Any) -> list[str]:
-        stems = (
-            [self.name] if self.row is None else [f"{self.name}[{i}]" for i in range(len(law_at(design, self.name)))]
-        )
-        return [path for law, stem in zip(self.grid(design), stems, strict=True) for path in number_paths(law, stem)]
+        laws = self.laws(design)
+        stems = [self.name] if self.row is ONE_LAW else [f"{self.name}[{i}]" for i in range(len(laws))]
+        return [path for law, stem in zip(laws, stems, strict=True) for path in number_paths(law, stem)]
 
     def embedding(self, structure: PartStructure, counts: Counts) -> Reals:
         along, across = self.counts(structure)
-        chordwise = np.eye(1)
-        if self.row is not None:
-            same = along == counts[0]
-            chordwise = np.eye(self.row.points(along)) if same else _nearest(self.row, along, counts[0])
-        return np.asarray(np.kron(chordwise, law_embedding(across, counts[1], COMPARED_PLACES)))
+        return np.asarray(
+            np.kron(self.row.embedding(along, counts[0]), law_embedding(across, counts[1], COMPARED_PLACES))
+        )
 
     def resized_value(self, design: Any, counts: Counts) -> Any:
         """Its laws nearest to those of a design, with other numbers of control points."""
         along, across = self.counts_of(design)
-        laws = self.grid(design)
+        laws = self.laws(design)
         if (along, across) == counts and all(len(law_points(law)) == across for law in laws):
-            return law_at(design, self.name)
+            return value_at(design, self.name)
         across_rows = law_basis(counts[1], COMPARED_PLACES)
         rows = np.zeros((len(laws), counts[1]))
         for i, law in enumerate(laws):
             rows[i] = np.linalg.lstsq(across_rows, np.real(Span(COMPARED_PLACES).values(law)), rcond=None)[0]
-        if self.row is not None and along != counts[0]:
-            rows = _nearest(self.row, counts[0], along) @ rows
+        if along != counts[0]:
+            rows = self.row.embedding(counts[0], along) @ rows
         least = min((float(np.min(law_points(law))) for law in laws), default=0.0)
         if least > 0.0:
             # laws that run past their numbers stay positive
             rows = np.maximum(rows, 0.5 * least)
         found = tuple(plain_law(row) for row in rows)
-        return found[0] if self.row is None else found
-
-
-def law_at(design: Any, path: str) -> Any:
-    """The law, or the row of laws, at a path."""
-    for step in re.findall(r"\w+", path):
-        design = design[int(step)] if step.isdigit() else getattr(design, step)
-    return design
+        return found[0] if self.row is ONE_LAW else found
 
 
 @final
@@ -220,91 +212,73 @@ class RatioLaw(PartLaw):
     holds_corners: ClassVar[bool] = True
 
 
-@final
-class EdgeCurve(PartLaw):
-    """An edge curve through points at even steps of the coordinate in which they slide on it, whose other is free."""
+@dataclass(frozen=True)
+class CurvePoints(PartLaw):
+    """The points of an edge curve, at even steps of the coordinate in which they slide on it; the other is free."""
+
+    axes: str
+    """coordinates of its points that are free"""
 
     def counts_of(self, design: Any) -> Counts:
-        return (len(getattr(design, self.name).points),)
+        return (len(value_at(design, self.name).points),)
 
     def limits(self) -> tuple[Counts, Counts]:
         return (2,), (MOST_CURVE,)
 
     def paths(self, design: Any) -> list[str]:
-        free = "x" if sliding_coordinate(design, self.name) == "r" else "r"
-        return [f"{self.name}.points[{i}].{free}" for i in range(*self.counts_of(design))]
+        return [f"{self.name}.points[{i}].{axis}" for i in range(*self.counts_of(design)) for axis in self.axes]
 
     def embedding(self, structure: PartStructure, counts: Counts) -> Reals:
-        own, other = (np.linspace(0.0, 1.0, each[0]) for each in (self.counts(structure), counts))
-        return np.asarray(CubicSpline(other, np.eye(len(other)))(own))
+        own, other = (self.places(each[0]) for each in (self.counts(structure), counts))
+        return np.asarray(np.kron(CubicSpline(other, np.eye(len(other)))(own), np.eye(len(self.axes))))
 
     def resized_value(self, design: Any, counts: Counts) -> Any:
-        curve = getattr(design, self.name)
+        curve = value_at(design, self.name)
         if self.counts_of(design) == counts:
             return curve
         line = np.real(curve.line(1.0).values(np.linspace(0.0, 1.0, FINE_PLACES)))
-        line = line[:, ::-1] if sliding_coordinate(design, self.name) == "r" else line
-        order = np.argsort(line[:, 0])
-        at = np.linspace(line[0, 0], line[-1, 0], counts[0])
-        rows = np.stack([at, np.interp(at, *line[order].T)], axis=-1)
-        rows = rows[:, ::-1] if sliding_coordinate(design, self.name) == "r" else rows
+        way = self.way(line)
+        order, at = np.argsort(way), way[0] + self.places(*counts) * (way[-1] - way[0])
+        rows = np.stack([np.interp(at, way[order], axis[order]) for axis in line.T], axis=-1)
         return replace(curve, points=tuple(Point(*row) for row in rows.tolist()))
+
+    def way(self, line: Reals) -> Reals:
+        """The coordinate (n,) along places (n, 2) of the curve in which its points stand at their places."""
+        return np.asarray(line[:, 1 - "xr".index(self.axes)])
+
+    def places(self, count: int) -> Reals:
+        """Places (count,) of its points, from 0 to 1."""
+        return np.linspace(0.0, 1.0, count)
 
 
 @final
 @dataclass(frozen=True)
-class WallCurve(PartLaw):
-    """Hub or shroud through points: two ends, and others at even steps of its length past both edges."""
+class WallPoints(CurvePoints):
+    """The points of hub or shroud: two ends, and others at even steps of its length past both edges."""
 
     stations: tuple[float, ...]
     """of its points, fractions of its length"""
     holds_corners: ClassVar[bool] = True
     along_span: ClassVar[tuple[int, ...]] = ()
 
-    def counts_of(self, design: Any) -> Counts:
-        return (len(law_at(design, self.name).points),)
-
     def limits(self) -> tuple[Counts, Counts]:
         return (FEWEST_ON_WALL,), (MOST_CURVE,)
 
-    def paths(self, design: Any) -> list[str]:
-        return [f"{self.name}.points[{i}].{axis}" for i in range(*self.counts_of(design)) for axis in "xr"]
+    def way(self, line: Reals) -> Reals:
+        return np.asarray(cumulative_length(line))
 
-    def embedding(self, structure: PartStructure, counts: Counts) -> Reals:
-        own, other = (self._stations(each[0]) for each in (self.counts(structure), counts))
-        return np.asarray(np.kron(CubicSpline(other, np.eye(len(other)))(own), np.eye(2)))
-
-    def resized_value(self, design: Any, counts: Counts) -> Any:
-        curve = law_at(design, self.name)
-        if self.counts_of(design) == counts:
-            return curve
-        line = np.real(curve.line(1.0).values(np.linspace(0.0, 1.0, FINE_PLACES)))
-        way = cumulative_length(line)
-        rows = np.stack([np.interp(self._stations(*counts), way / way[-1], axis) for axis in line.T], axis=-1)
-        return replace(curve, points=tuple(Point(*row) for row in rows.tolist()))
-
-    def _stations(self, count: int) -> Reals:
+    def places(self, count: int) -> Reals:
         if count == len(self.stations):
             return np.array(self.stations)
         return np.array([0.0, *np.linspace(self.stations[1], self.stations[-2], count - 2), 1.0])
-
-
-def _wall_law(design: Any, name: str) -> WallCurve:
-    points = np.array([[float(np.real(each.x)), float(np.real(each.r))] for each in law_at(design, name).points])
-    way = cumulative_length(points)
-    return WallCurve(name, None, spanwise=True, stations=tuple((way / way[-1]).tolist()))
-
-
-def _nearest(row: Chordwise, count: int, other: int) -> Reals:
-    """Control points of the rows nearest to those of another count."""
-    return np.asarray(np.linalg.lstsq(row.basis(count), row.basis(other), rcond=None)[0])
 
 
 def _laws(design: Any) -> list[Any]:
     spanwise = isinstance(design, SectionedBlade)
     laws = [(f"section.{path}", law) for path, law in named_laws(design.section)]
     if spanwise:
-        laws += [(name, law) for name in POSITIONS if (law := getattr(design, name)) is not None]
+        positions = ("leading_edge_theta", "leading_edge_y")
+        laws += [(name, law) for name in positions if (law := getattr(design, name)) is not None]
     stationary = {path.partition("[")[0] for path, law in laws if stations_of(law) is not None}
     rows = {f"section.{name}": row for name, row in chordwise_rows(design.section).items()}
     found: list[Any] = [
@@ -314,12 +288,20 @@ def _laws(design: Any) -> list[Any]:
     ]
     if not spanwise:
         return found
-    single = [path for path, _ in laws if path.partition("[")[0] not in {*stationary, *rows}]
-    edges = [edge for edge in EDGES if isinstance(getattr(design, edge), ThroughPoints)]
-    paths = {f"flow_path.{wall}": getattr(design.flow_path, wall) for wall in WALLS}
-    walls = [p for p, w in paths.items() if isinstance(w, ThroughPoints) and len(w.points) >= FEWEST_ON_WALL]
-    found += [PartLaw(path, None, spanwise) for path in single]
-    return [*found, *(EdgeCurve(e, None, spanwise) for e in edges), *(_wall_law(design, wall) for wall in walls)]
+    for path, _ in laws:
+        if path.partition("[")[0] not in {*stationary, *rows}:
+            found.append(PartLaw(path, ONE_LAW, spanwise))
+    for edge in EDGES:
+        if isinstance(getattr(design, edge), ThroughPoints):
+            axes = "x" if sliding_coordinate(design, edge) == "r" else "r"
+            found.append(CurvePoints(edge, ONE_LAW, spanwise, axes))
+    for wall in WALLS:
+        curve = getattr(design.flow_path, wall)
+        if isinstance(curve, ThroughPoints) and len(curve.points) >= FEWEST_ON_WALL:
+            way = cumulative_length(np.real(np.array([tuple(each) for each in curve.points])))
+            stations = tuple((way / way[-1]).tolist())
+            found.append(WallPoints(f"flow_path.{wall}", ONE_LAW, spanwise, "xr", stations))
+    return found
 
 
 def _structure(design: Any) -> PartStructure:
@@ -331,9 +313,9 @@ def _reshaped(design: Any, structure: PartStructure) -> Any:
     found = design.changed(changes)
     for name in [name for name in changes if name.endswith("_heights")]:
         # the side leaves its corner as fast where its first control point is as much nearer as the knots are
-        ratio = (len(law_at(design, name)) + 1.0) / (len(changes[name]) + 1.0)
+        ratio = (len(value_at(design, name)) + 1.0) / (len(changes[name]) + 1.0)
         for tangent in (name.replace("heights", f"tangent_{way}") for way in ("in", "out")):
-            law = law_at(found, tangent)
+            law = value_at(found, tangent)
             if law is not None and stations_of(law) is None:
                 scaled = found.changed({tangent: plain_law(ratio * np.array(law_points(law)))})
                 found = scaled if ratio >= 1.0 or _has_shape(scaled) else found
@@ -357,7 +339,7 @@ def _richest(design: Any) -> PartStructure:
             found[law.name] = (max(*law.counts_of(design), RICH_CURVE),)
             continue
         along, across = law.counts_of(design)
-        chordwise = along if law.row is None else max(along, RICH_CHORDWISE[3 if law.spanwise else 2])
+        chordwise = max(along, RICH_CHORDWISE[3 if law.spanwise else 2])
         found[law.name] = min(chordwise, most[0]), min(max(across, RICH_SPAN), most[1])
     return PartStructure(found)
 
