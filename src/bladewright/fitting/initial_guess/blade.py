@@ -9,10 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from bladewright.blade.design.flow_path import Channel
 from bladewright.blade.design.row_design import Arrangement, LengthUnit
 from bladewright.blade.design.unified import UnifiedBlade
-from bladewright.designs import Point
 from bladewright.errors import BladewrightError, FitError
 from bladewright.fitting.clouds.thinning import even_subset, random_subset, without_isolated_points
 from bladewright.fitting.free_parameters import FreeParameters
@@ -107,21 +105,7 @@ def _blade_of(sliced: SlicedChannel, header: dict[str, Any]) -> UnifiedBlade:
     scale = lengths[:, None] / (channel.radius(np.tile(PLACES, (len(slices.v), 1)), slices.v) * extents[:, None])
     numbers = unified_numbers(slices, FEW.chordwise, FEW.span, scale)
     numbers["leading_edge_theta" if channel.revolved else "leading_edge_y"] = law
-    return UnifiedBlade(**header, **numbers, channel=_in_unit(channel.part, metre))
-
-
-def _in_unit(channel: Channel, metre: float) -> Channel:
-    """A channel in metres in another unit of length."""
-
-    def points(name: str) -> tuple[Point, ...]:
-        return tuple(Point(each.x / metre, each.r / metre) for each in getattr(channel, name))
-
-    return Channel(
-        leading_edge=points("leading_edge"),
-        trailing_edge=points("trailing_edge"),
-        hub=points("hub"),
-        shroud=points("shroud"),
-    )
+    return UnifiedBlade(**header, **numbers, channel=channel.part(metre))
 
 
 ANNULAR_AT_ONCE = 3e-3

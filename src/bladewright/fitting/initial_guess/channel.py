@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,10 +13,11 @@ from scipy.spatial import cKDTree
 from bladewright.blade.design.flow_path import Channel
 from bladewright.blade.flow_path.channel import TransfiniteChannel, transfinite_channel
 from bladewright.designs import Point
+from bladewright.fitting.free_parameters import EDGES
 from bladewright.fitting.initial_guess.meridional_outline import alpha_boundary, corner_sets
 from bladewright.fitting.initial_guess.slices import PlanePoints, Slices, chord_direction, slices_of
 from bladewright.fitting.model_selection.structure import INITIAL_BLADES
-from bladewright.numerics.elementary import cross2, cumulative_length
+from bladewright.numerics.elementary import cross2, cumulative_length, length
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 from bladewright.section.laws import law_basis
 
@@ -36,15 +38,25 @@ FOLD_MARGIN = 0.03
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FirstChannel:
-    """A channel as a part of a design, in metres, and its stream lines."""
+    """A channel by the control points of its four curves, and its stream lines."""
 
-    part: Channel
+    curves: Mapping[str, Reals]
+    """(n, 2) of each curve [m], corners among them"""
     revolved: bool
+
+    def part(self, metre: float) -> Channel:
+        """The channel as a part of a design whose length unit is `metre` metres."""
+        # walls have no corners of their own
+        own = {name: rows if name in EDGES else rows[1:-1] for name, rows in self.curves.items()}
+        points: dict[str, Any] = {
+            name: tuple(Point(float(x) / metre, float(r) / metre) for x, r in rows) for name, rows in own.items()
+        }
+        return Channel(**points)
 
     @cached_property
     def exact(self) -> TransfiniteChannel:
         """Its map (u, v) -> (x, r)."""
-        return transfinite_channel(self.part, 1.0)
+        return transfinite_channel(self.part(1.0), 1.0)
 
     def position(self, u: Reals, v: Reals) -> Reals:
         """(x, r) (..., 2) at u and v (...)."""
@@ -112,7 +124,7 @@ def channel_through(pieces: Mapping[str, Reals], counts: Mapping[str, int], *, r
 
     Its curves have so many control points, or as many fewer as keep it from folding over.
     """
-    corners = {edge: pieces[edge][[0, -1]] for edge in ("leading_edge", "trailing_edge")}
+    corners = {edge: pieces[edge][[0, -1]] for edge in EDGES}
     for wall, end in (("hub", 0), ("shroud", 1)):
         corners[wall] = np.stack([corners["leading_edge"][end], corners["trailing_edge"][end]])
     found: list[FirstChannel] = []
@@ -121,22 +133,10 @@ def channel_through(pieces: Mapping[str, Reals], counts: Mapping[str, int], *, r
             name: elevated(through(piece, min(counts[name], most), *corners[name]), counts[name])
             for name, piece in pieces.items()
         }
-        found.append(FirstChannel(part=_part(curves), revolved=revolved))
+        found.append(FirstChannel(curves=curves, revolved=revolved))
         if found[-1].least_jacobian() > LEAST_JACOBIAN:
             return found[-1]
     return max(found, key=FirstChannel.least_jacobian)
-
-
-def _part(curves: Mapping[str, Reals]) -> Channel:
-    def points(rows: Reals) -> tuple[Point, ...]:
-        return tuple(Point(float(x), float(r)) for x, r in rows)
-
-    return Channel(
-        leading_edge=points(curves["leading_edge"]),
-        trailing_edge=points(curves["trailing_edge"]),
-        hub=points(curves["hub"][1:-1]),
-        shroud=points(curves["shroud"][1:-1]),
-    )
 
 
 def through(line: Reals, count: int, first: Reals, last: Reals) -> Reals:
@@ -224,11 +224,15 @@ def ranked_channels(
     """
     found: list[tuple[float, SlicedChannel]] = []
     for number, pieces in enumerate(corner_sets(alpha_boundary(machine[:, :2]))):
+        middles = [np.mean(piece, axis=0) for piece in pieces]
         for turn in pairings(machine, pieces, revolved=revolved):
-            named = _named(pieces, turn)
-            sliced = sliced_channel(machine[rows], named, revolved=revolved)
-            if _radial(named) and _rounder_at_end(sliced.slices):
-                sliced = sliced_channel(machine[rows], _reversed(named), revolved=revolved)
+            # the flow leads towards larger x, or where that hardly shows, away from the rounder edge
+            ahead = middles[(1 + turn) % 4] - middles[(3 + turn) % 4]
+            forward = turn if ahead[0] >= 0.0 else turn + 2
+            sliced = sliced_channel(machine[rows], _named(pieces, forward), revolved=revolved)
+            first, last = (float(np.mean(radii)) for radii in sliced.slices.radii)
+            if abs(ahead[0]) < RADIAL_SHARE * float(length(ahead)) and last > ROUNDER_RATIO * first:
+                sliced = sliced_channel(machine[rows], _named(pieces, forward + 2), revolved=revolved)
             found.append((sliced.mean_distance / (CLEARLY_NEARER if number else 1.0), sliced))
     return [sliced for _, sliced in sorted(found, key=lambda each: each[0])]
 
@@ -313,32 +317,6 @@ def _opening(machine: Reals, piece: Reals, *, revolved: bool) -> float | None:
 
 
 def _named(pieces: list[Reals], turn: int) -> dict[str, Reals]:
-    """Four pieces of an anticlockwise boundary by their names, for one of the two ways to pair them.
-
-    Anticlockwise in (x, r) they are hub, trailing edge, shroud, leading edge; the flow goes towards +x.
-    """
+    """Four pieces of an anticlockwise boundary by their names: hub, trailing edge, shroud, leading edge in (x, r)."""
     hub, trailing, shroud, leading = (pieces[(i + turn) % 4] for i in range(4))
-    if np.mean(leading[:, 0]) > np.mean(trailing[:, 0]):
-        hub, trailing, shroud, leading = shroud, leading, hub, trailing
     return {"hub": hub, "trailing_edge": trailing, "shroud": shroud[::-1], "leading_edge": leading[::-1]}
-
-
-def _radial(named: dict[str, Reals]) -> bool:
-    """Whether the stream lines hardly lead along x, so that x does not show where they start."""
-    step = np.mean(named["trailing_edge"], axis=0) - np.mean(named["leading_edge"], axis=0)
-    return abs(float(step[0])) < RADIAL_SHARE * float(np.sqrt(np.sum(step**2)))
-
-
-def _rounder_at_end(slices: Slices) -> bool:
-    first, last = slices.radii
-    return float(np.mean(last)) > ROUNDER_RATIO * float(np.mean(first))
-
-
-def _reversed(named: dict[str, Reals]) -> dict[str, Reals]:
-    """The same outline for flow in the other direction."""
-    return {
-        "hub": named["shroud"][::-1],
-        "shroud": named["hub"][::-1],
-        "leading_edge": named["trailing_edge"][::-1],
-        "trailing_edge": named["leading_edge"][::-1],
-    }

@@ -186,8 +186,6 @@ def _placed(
 
 def chord_direction(plane: PlanePoints) -> SpanLaw:
     """The angle of the chord [rad] by place along the span: the principal axis of bands of points, less their trend."""
-    if plane.flat:
-        return lambda v: np.full_like(v, longest_chord(plane.points))
     angles, places = [], []
     for rows in plane.bands:
         trend = np.stack([np.ones(len(rows)), plane.v[rows]], axis=-1)
