@@ -249,7 +249,7 @@ def _start(points: Reals, camber: int, thickness: int, *, round_end: bool) -> Ca
     except QhullError as error:
         raise FitError(f"the {len(points)} points lie on a line: a profile has two sides") from error
     plane = PlanePoints(points=points, v=np.zeros(len(points)))
-    found = slices_of(plane, lambda v: np.full_like(v, direction), np.zeros(1), 1)
+    found = slices_of(plane, np.array([direction]), np.zeros(1), 1)
     knots = uniform_knots(camber, DEGREE)
     line = inserted(Curve(control_points=found.camber[0], knots=uniform_knots(4, DEGREE), degree=DEGREE), knots[4:-4])
     low, high = found.camber[0, [0, 3], 0]

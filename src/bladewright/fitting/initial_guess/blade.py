@@ -102,7 +102,7 @@ def _blade_of(sliced: SlicedChannel, header: dict[str, Any]) -> UnifiedBlade:
         place = place / metre
     law = plain_law(fitted_law(place, slices.v, FEW.span["place"]))
     # a meridional length at the places of the slices, in extents of the plane
-    scale = lengths[:, None] / (channel.radius(np.tile(PLACES, (len(slices.v), 1)), slices.v) * extents[:, None])
+    scale = lengths[:, None] / (channel.radius(PLACES, slices.v) * extents[:, None])
     numbers = unified_numbers(slices, FEW.chordwise, FEW.span, scale)
     numbers["leading_edge_theta" if channel.revolved else "leading_edge_y"] = law
     return UnifiedBlade(**header, **numbers, channel=channel.part(metre))

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import map_coordinates
+from scipy.interpolate import RectBivariateSpline
 from scipy.spatial import cKDTree
 
 from bladewright.blade.design.flow_path import Channel
@@ -18,7 +18,8 @@ from bladewright.fitting.initial_guess.meridional_outline import alpha_boundary,
 from bladewright.fitting.initial_guess.slices import PlanePoints, Slices, chord_direction, slices_of
 from bladewright.fitting.model_selection.structure import INITIAL_BLADES
 from bladewright.numerics.elementary import cross2, cumulative_length, length
-from bladewright.nurbs.basis import Reals, basis, uniform_knots
+from bladewright.nurbs.basis import Reals, uniform_knots
+from bladewright.nurbs.fit import approximated
 from bladewright.section.laws import law_basis
 
 CONTINUED = 0.5
@@ -79,38 +80,38 @@ class FirstChannel:
         return u, v
 
     @cached_property
-    def _table(self) -> tuple[Reals, Reals, Reals]:
-        """Radii, or ones of a cascade, abscissae in the plane and lengths [m] (25, 129), both 0 at u = 0."""
+    def _ways(self) -> tuple[RectBivariateSpline, RectBivariateSpline]:
+        """Abscissa in the plane and length [m] by v and u, both 0 at u = 0."""
         position = self.position(ALONG[None], SPAN[:, None])
-        radius = position[..., 1] if self.revolved else np.ones(position.shape[:2])
-        radius = np.maximum(radius, LEAST_RADIUS * float(np.max(radius)))
-        step = np.sqrt(np.sum(np.diff(position, axis=1) ** 2, axis=-1))
-        found = [radius]
+        step, radius = length(np.diff(position, axis=1)), self._radii(position)
+        found = []
         for density in (2.0 / (radius[:, 1:] + radius[:, :-1]), np.ones_like(step)):
             way = np.concatenate([np.zeros((len(SPAN), 1)), np.cumsum(step * density, axis=1)], axis=1)
-            found.append(way - np.array([np.interp(0.0, ALONG, row) for row in way])[:, None])
-        return found[0], found[1], found[2]
+            way -= np.array([np.interp(0.0, ALONG, row) for row in way])[:, None]
+            found.append(RectBivariateSpline(SPAN, ALONG, way))
+        return found[0], found[1]
+
+    def _radii(self, position: Reals) -> Reals:
+        """Radius (...) [m] at places (..., 2), or 1 of a cascade."""
+        radius = position[..., 1] if self.revolved else np.ones(position.shape[:-1])
+        return np.asarray(np.maximum(radius, LEAST_RADIUS * float(np.max(radius))))
 
     def extents(self, v: Reals) -> tuple[Reals, Reals]:
         """Extents in the plane and meridional lengths [m] (n,) of the stream lines at v (n,)."""
-        first, second = (np.interp(v, SPAN, [np.interp(1.0, ALONG, row) for row in table]) for table in self._table[1:])
+        first, second = (way.ev(v, 1.0) for way in self._ways)
         return first, second
 
     def abscissa(self, u: Reals, v: Reals) -> Reals:
         """Abscissa (n,) in the plane of the section at v."""
-        column = (u + CONTINUED) / (1.0 + 2.0 * CONTINUED) * (len(ALONG) - 1)
-        row = np.clip(v, 0.0, 1.0) * (len(SPAN) - 1)
-        return np.asarray(map_coordinates(self._table[1], [row, column], order=3, mode="nearest"))
+        return np.asarray(self._ways[0].ev(v, u))
 
     def u_at(self, abscissa: Reals, v: Reals) -> Reals:
-        """u (m, k) at abscissae (m, k) in the planes of the sections at v (m,)."""
-        rows = np.stack([np.interp(v, SPAN, column) for column in self._table[1].T], axis=-1)
-        return np.stack([np.interp(at, row, ALONG) for at, row in zip(abscissa, rows, strict=True)])
+        """u (m, k) at abscissae (m, k) in the planes of the sections at increasing v (m,)."""
+        return np.stack([np.interp(at, row, ALONG) for at, row in zip(abscissa, self._ways[0](v, ALONG), strict=True)])
 
     def radius(self, u: Reals, v: Reals) -> Reals:
-        """Radius (m, k) [m], or 1 of a cascade, at u (m, k) and v (m,)."""
-        rows = np.stack([np.interp(v, SPAN, column) for column in self._table[0].T], axis=-1)
-        return np.stack([np.interp(at, ALONG, row) for at, row in zip(u, rows, strict=True)])
+        """Radius (m, k) [m], or 1 of a cascade, at u (k,) and v (m,)."""
+        return self._radii(self.position(u, v[:, None]))
 
     def least_jacobian(self) -> float:
         """The least Jacobian of the map, of its median; negative where it folds."""
@@ -124,40 +125,26 @@ def channel_through(pieces: Mapping[str, Reals], counts: Mapping[str, int], *, r
 
     Its curves have so many control points, or as many fewer as keep it from folding over.
     """
-    corners = {edge: pieces[edge][[0, -1]] for edge in EDGES}
-    for wall, end in (("hub", 0), ("shroud", 1)):
-        corners[wall] = np.stack([corners["leading_edge"][end], corners["trailing_edge"][end]])
+    ends = {edge: pieces[edge][[0, -1]] for edge in EDGES}
+    ends |= {wall: np.stack([ends[edge][end] for edge in EDGES]) for end, wall in enumerate(("hub", "shroud"))}
     found: list[FirstChannel] = []
     for most in range(max(counts.values()), 2, -1):
-        curves = {
-            name: elevated(through(piece, min(counts[name], most), *corners[name]), counts[name])
-            for name, piece in pieces.items()
-        }
+        curves = {name: _through(piece, min(counts[name], most), ends[name]) for name, piece in pieces.items()}
         found.append(FirstChannel(curves=curves, revolved=revolved))
         if found[-1].least_jacobian() > LEAST_JACOBIAN:
             return found[-1]
     return max(found, key=FirstChannel.least_jacobian)
 
 
-def through(line: Reals, count: int, first: Reals, last: Reals) -> Reals:
-    """Control points (count, 2) of the curve between two points nearest to a polyline, by its length."""
-    line = np.concatenate([first[None], line[1:-1], last[None]])
+def _through(line: Reals, count: int, ends: Reals) -> Reals:
+    """Control points (count, 2) of the curve between two points (2, 2) nearest to a polyline, by its length."""
+    line = np.concatenate([ends[:1], line[1:-1], ends[1:]])
     way = cumulative_length(line)
-    t = np.linspace(0.0, 1.0, 61)
-    places = np.stack([np.interp(t * way[-1], way, line[:, i]) for i in (0, 1)], axis=-1)
-    degree = min(count - 1, 5)
-    rows, ends = np.asarray(basis(uniform_knots(count, degree), degree, t)), np.stack([first, last])
-    inner = np.linalg.lstsq(rows[:, 1:-1], places - rows[:, [0, -1]] @ ends, rcond=None)[0]
-    return np.concatenate([ends[:1], inner, ends[1:]])
-
-
-def elevated(points: Reals, count: int) -> Reals:
-    """The same curve, or the nearest one, with more control points."""
-    if len(points) == count:
-        return points
-    degree = min(len(points) - 1, 5)
-    line = np.asarray(basis(uniform_knots(len(points), degree), degree, np.linspace(0.0, 1.0, 61)) @ points)
-    return through(line, count, points[0], points[-1])
+    t, degree = np.linspace(0.0, 1.0, 61), min(count - 1, 5)
+    places = np.stack([np.interp(t * way[-1], way, axis) for axis in line.T], axis=-1)
+    return np.asarray(
+        approximated(places, t, degree=degree, knots=uniform_knots(count, degree), ends=True).control_points
+    )
 
 
 STATIONS: Reals = np.linspace(0.0, 1.0, 9)
@@ -257,7 +244,7 @@ def _sliced(machine: Reals, channel: FirstChannel) -> SlicedChannel:
     u, v = channel.places(machine[:, :2])
     v = np.clip(v, 0.0, 1.0)
     past = machine[:, :2] - channel.position(u, v)
-    extent, length = channel.extents(v)
+    extent, lengths = channel.extents(v)
     # the place around the axis is smooth along the span; in extents, which may differ tenfold, it is not
     rows, around = law_basis(LAW_COUNT, v), machine[:, 2]
     place = np.linalg.lstsq(rows, around, rcond=None)[0]
@@ -268,7 +255,7 @@ def _sliced(machine: Reals, channel: FirstChannel) -> SlicedChannel:
     camber = slices.camber.copy()
     camber[..., 1] += (law_basis(LAW_COUNT, STATIONS) @ place / channel.extents(STATIONS)[0])[:, None]
     slices = replace(slices, camber=camber)
-    outside = float(np.mean(np.sqrt(np.sum(past**2, axis=-1)) / length)) / float(np.mean(slices.chords))
+    outside = float(np.mean(length(past) / lengths)) / float(np.mean(slices.chords))
     return SlicedChannel(channel=channel, plane=plane, slices=slices, outside=outside)
 
 

@@ -1,6 +1,5 @@
 """A first section from points in the plane."""
 
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -45,8 +44,12 @@ def first_section(
     """
     points = without_isolated_points(np.unique(np.asarray(points, dtype=np.float64), axis=0))
     points = points[even_subset(points, DRAWN_POINTS)]
-    start, extent, metre = np.min(points[:, 0]), np.ptp(points[:, 0]), UNITS[length_unit]
-    plane = PlanePoints(points=(points - [start, 0.0]) / extent, v=np.zeros(len(points)))
+    start, extent, metre = (
+        np.array([np.min(points[:, 0]), np.mean(points[:, 1])]),
+        np.ptp(points[:, 0]),
+        UNITS[length_unit],
+    )
+    plane = PlanePoints(points=(points - start) / extent, v=np.zeros(len(points)))
     task = Task(points=points, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
     best: Match | None = None
     refusal: BladewrightError | None = None
@@ -54,16 +57,16 @@ def first_section(
         direction = longest_chord(points) + turn
         if abs(direction) > STEEPEST:
             continue
-        slices = slices_of(plane, partial(np.full_like, fill_value=direction), np.zeros(1), 1)
+        slices = slices_of(plane, np.array([direction]), np.zeros(1), 1)
         numbers: dict[str, Any] = unified_numbers(slices, chordwise, {}, 1.0)
-        first = slices.camber[0, 0]
-        size = float(slices.camber[0, 3, 0] - first[0])
+        first = start + extent * slices.camber[0, 0]
+        size = float(slices.camber[0, 3, 0] - slices.camber[0, 0, 0])
         try:
             guess = UnifiedSection(
                 name=name,
                 length_unit=length_unit,
-                leading_edge_x=float(start + extent * first[0]) / metre,
-                leading_edge_y=float(extent * first[1]) / metre,
+                leading_edge_x=float(first[0]) / metre,
+                leading_edge_y=float(first[1]) / metre,
                 axial_chord=extent * size / metre,
                 samples=samples,
                 clustering=clustering,

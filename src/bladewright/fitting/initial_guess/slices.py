@@ -6,7 +6,7 @@ powers that round, sharp and blunt edges need; each coefficient is a law along t
 how much it counts, follows from the last turn.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -18,7 +18,7 @@ from scipy.spatial import ConvexHull
 
 from bladewright.numerics.robust import TUKEY_WIDTH, median_deviation
 from bladewright.nurbs.basis import Reals
-from bladewright.section.camber import bernstein
+from bladewright.section.camber import bernstein, camber_tangents
 from bladewright.section.laws import law_basis
 
 TURNS = 12
@@ -41,9 +41,6 @@ cambered section does not point along the chord, and the middle across the chord
 edge is the point furthest along the camber's tangent, among those within `NOSE_REACH` (design/first_guesses.md)."""
 EDGE_SHARE = 60
 """one in so many points of a band stands at an edge (design/first_guesses.md)"""
-
-SpanLaw = Callable[[Reals], Reals]
-"""a quantity (n,) by place along the span (n,)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -97,14 +94,15 @@ class Slices:
         return first**2 / (2.0 * EDGE_PLACE * chord), last**2 / (2.0 * EDGE_PLACE * chord)
 
 
-def slices_of(plane: PlanePoints, turn: SpanLaw, stations: Reals, count: int) -> Slices:
-    """The sections of points whose chord lies along `turn` [rad], with laws of `count` control points."""
-    direction = turn(plane.v)
+def slices_of(plane: PlanePoints, turn: Reals, stations: Reals, count: int) -> Slices:
+    """The sections of points whose chord lies along the law `turn` (k,) [rad], with laws of `count` control points.
+
+    Ordinates count from near the sections: the weak pull of the least squares is towards zero.
+    """
+    direction = law_basis(len(turn), plane.v) @ turn
     cosine, sine = np.cos(direction), np.sin(direction)
     rows, at = law_basis(count, plane.v), law_basis(count, stations)
     a, b = plane.points.T
-    stacking = fitted_law(b, plane.v, count)
-    b = b - rows @ stacking
     along, across = cosine * a + sine * b, -sine * a + cosine * b
     low, high = (_envelope(plane, rows, along, sign) for sign in (-1.0, 1.0))
     first, size = rows @ low, np.maximum(rows @ (high - low), 1e-6)
@@ -141,10 +139,10 @@ def slices_of(plane: PlanePoints, turn: SpanLaw, stations: Reals, count: int) ->
         near = np.flatnonzero(np.abs(t - place) < NOSE_REACH)
         ends.append(_outermost(plane, rows, np.stack([along, across], axis=-1), sign * ahead, near))
     line, half = _placed(at, middle_laws, half_laws, (at @ low, at @ (high - low)), (at @ ends[0], at @ ends[1]))
-    direction = turn(stations)
+    direction = law_basis(len(turn), stations) @ turn
     cosine, sine = np.cos(direction)[:, None], np.sin(direction)[:, None]
     x, y = line[..., 0], line[..., 1]
-    line = np.stack([cosine * x - sine * y, sine * x + cosine * y + (at @ stacking)[:, None]], axis=-1)
+    line = np.stack([cosine * x - sine * y, sine * x + cosine * y], axis=-1)
     return Slices(v=stations, camber=line, half=half, mean_distance=float(np.mean(left / size)))
 
 
@@ -177,15 +175,14 @@ def _placed(
         shares = bernstein(s)
         row[[0, 3], 1] = low, high
         row[1:3, 1] = np.linalg.lstsq(shares[:, 1:3], height - shares[:, [0, 3]] @ [low, high], rcond=None)[0]
-    # across the chord the sides stand further apart than along the camber's normal
-    slope = 3.0 * line[..., 1] @ _bernstein_slopes(PLACES).T / extent[:, None]
     t = np.clip((start[:, None] + extent[:, None] * PLACES - first[:, None]) / size[:, None], 0.0, 1.0)
     found = np.einsum("mkj,jc,mc->mk", _half_basis(t), half, at)
-    return line, np.maximum(found, 1e-4 * extent[:, None]) / np.sqrt(1.0 + slope**2)
+    # across the chord the sides stand further apart than along the camber's normal
+    return line, np.maximum(found, 1e-4 * extent[:, None]) * camber_tangents(line, PLACES)[..., 0]
 
 
-def chord_direction(plane: PlanePoints) -> SpanLaw:
-    """The angle of the chord [rad] by place along the span: the principal axis of bands of points, less their trend."""
+def chord_direction(plane: PlanePoints) -> Reals:
+    """The law (k,) of the chord's angle [rad]: the principal axis of bands of points, less their trend."""
     angles, places = [], []
     for rows in plane.bands:
         trend = np.stack([np.ones(len(rows)), plane.v[rows]], axis=-1)
@@ -194,9 +191,8 @@ def chord_direction(plane: PlanePoints) -> SpanLaw:
         axis = np.linalg.eigh(band.T @ band)[1][:, 1]
         angles.append(float(np.arctan(axis[1] / axis[0])) if axis[0] else np.pi / 2.0)
         places.append(float(np.mean(plane.v[rows])))
-    count = min(3, len(places))
-    law = fitted_law(np.array(angles), np.array(places), count)
-    return lambda v: np.clip(law_basis(count, v) @ law, -STEEPEST, STEEPEST)
+    law = fitted_law(np.array(angles), np.array(places), min(3, len(places)))
+    return np.clip(law, -STEEPEST, STEEPEST)
 
 
 def longest_chord(points: Reals) -> float:
@@ -233,12 +229,6 @@ def _ridge(matrix: Reals, rhs: Reals, weight: Reals) -> Reals:
     normal = rows.T @ rows
     normal[np.diag_indices_from(normal)] += RIDGE**2 * np.sum(weight**2)
     return np.asarray(np.linalg.solve(normal, rows.T @ (rhs * weight)))
-
-
-def _bernstein_slopes(t: Reals) -> Reals:
-    """Derivatives (n, 4) of the cubic Bernstein polynomials, of a third."""
-    s = 1.0 - t
-    return np.stack([-(s**2), s**2 - 2.0 * t * s, 2.0 * t * s - t**2, t**2], axis=-1)
 
 
 LIMITS = {
