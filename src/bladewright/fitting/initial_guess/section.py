@@ -5,8 +5,7 @@ from typing import Any
 import numpy as np
 
 from bladewright.blade.design.row_design import LengthUnit
-from bladewright.designs import Design
-from bladewright.errors import BladewrightError, DesignError, FitError
+from bladewright.errors import BladewrightError, FitError
 from bladewright.fitting.clouds.thinning import even_subset, without_isolated_points
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.slices import STEEPEST, PlanePoints, longest_chord, slices_of, unified_numbers
@@ -23,9 +22,8 @@ TURNS: tuple[float, ...] = (0.0, 0.2, -0.2, 0.5, -0.5)
 may lie across it"""
 NEAR = 2e-3
 """mean distance, of the chord, with which no other direction is tried (design/matching_constants.md)"""
-NOISE, ROUNDS = 0.01, (5, 0)
-"""noise assumed of a first section, of the chord, and rounds of its search: none where that leads to one that cannot be
-built (design/matching_constants.md)"""
+NOISE, ROUNDS = 0.01, 5
+"""noise assumed of a first section, of the chord, and rounds of its search (design/matching_constants.md)"""
 
 
 def first_section(
@@ -72,7 +70,8 @@ def first_section(
                 clustering=clustering,
                 **numbers,
             )
-            found = _buildable(task, with_feasible_edges(guess))
+            found = searched(task, with_feasible_edges(guess), noise=NOISE, rounds=ROUNDS)
+            found.design.build()
         except BladewrightError as error:
             refusal = error
             continue
@@ -82,17 +81,3 @@ def first_section(
     if best is None:
         raise FitError(f"no section that can be built was found near the points: {refusal}")
     return best.design  # type: ignore[return-value]
-
-
-def _buildable(task: Task, guess: Design) -> Match:
-    """The match that a search from a guess leads to, or the guess, whichever can be built; raises DesignError."""
-    for rounds in ROUNDS:
-        found = searched(task, guess, noise=NOISE, rounds=rounds)
-        try:
-            found.design.build()
-        except DesignError:
-            if not rounds:
-                raise
-            continue
-        break
-    return found
