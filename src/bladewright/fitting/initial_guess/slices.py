@@ -52,16 +52,9 @@ class PlanePoints:
     v: Reals
     """(n,) place along the span; zeros of a single section"""
 
-    @property
-    def flat(self) -> bool:
-        """Whether all points belong to one section."""
-        return not np.any(self.v)
-
     @cached_property
     def bands(self) -> list[NDArray[np.intp]]:
         """Indices of the points in bands along the span that overlap."""
-        if self.flat:
-            return [np.arange(len(self.v))]
         middles = np.linspace(0.0, 1.0, BANDS + 1)
         found = [np.flatnonzero(np.abs(self.v - middle) < 1.0 / BANDS) for middle in middles]
         return [rows for rows in found if len(rows) >= BAND_POINTS]
@@ -104,7 +97,8 @@ def slices_of(plane: PlanePoints, turn: Reals, stations: Reals, count: int) -> S
     rows, at = law_basis(count, plane.v), law_basis(count, stations)
     a, b = plane.points.T
     along, across = cosine * a + sine * b, -sine * a + cosine * b
-    low, high = (_envelope(plane, rows, along, sign) for sign in (-1.0, 1.0))
+    everywhere = np.arange(len(along))
+    low, high = (_outermost(plane, rows, along[:, None], sign * along, everywhere)[:, 0] for sign in (-1.0, 1.0))
     first, size = rows @ low, np.maximum(rows @ (high - low), 1e-6)
     t = np.clip((along - first) / size, 0.0, 1.0)
     middle_rows, half_rows = (
@@ -208,13 +202,6 @@ def _half_basis(t: Reals) -> Reals:
     """Functions of the half thickness (n, 6): round edges, two powers between, and edges with a thickness."""
     s = 1.0 - t
     return np.stack([np.sqrt(t) * s, np.sqrt(s) * t, t * s, t**2 * s, s, t], axis=-1)
-
-
-def _envelope(plane: PlanePoints, rows: Reals, along: Reals, sign: float) -> Reals:
-    """Control points of the law along which the outermost points along the chord stand."""
-    if plane.flat:
-        return np.array([sign * np.max(sign * along)])
-    return _outermost(plane, rows, along[:, None], sign * along, np.arange(len(along)))[:, 0]
 
 
 def _even(t: Reals, plane: PlanePoints) -> Reals:
