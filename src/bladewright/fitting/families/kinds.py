@@ -76,20 +76,11 @@ class FitFamily:
 FAMILIES = {
     kind.name: kind
     for kind in (
-        FitFamily(
-            name="curvature-meanline",
-            section=CurvatureMeanlineSection,
-            first_parts=curvature_meanline_parts,
-        ),
+        FitFamily(name="curvature-meanline", section=CurvatureMeanlineSection, first_parts=curvature_meanline_parts),
         FitFamily(name="suction-pressure", section=SuctionPressureSection, first_parts=suction_pressure_parts),
         FitFamily(name="wedge-diffuser", section=WedgeDiffuserSection, first_parts=wedge_diffuser_parts),
         FitFamily(name="camber-angle", section=CamberAngleSection, first_parts=camber_angle_parts),
-        FitFamily(
-            name="profile",
-            section=ProfileSection,
-            first_parts=profile_parts,
-            through_points=through_points,
-        ),
+        FitFamily(name="profile", section=ProfileSection, first_parts=profile_parts, through_points=through_points),
         FitFamily(
             name="segmented",
             section=SegmentedSection,
