@@ -197,6 +197,15 @@ def test_a_kink_may_be_the_closest_point():
     assert np.allclose(ridge.points, [[1.0, 0.4, 1.0]], rtol=0.0, atol=1e-9)
 
 
+def test_beside_a_corner_a_long_side_is_found_though_the_samples_of_a_short_face_are_nearer():
+    net = np.array([[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [1.0, -0.001], [1.0, -0.002]])
+    outline = Curve(control_points=net, knots=np.array([0.0, 0.0, 0.0, 0.9, 0.9, 1.0, 1.0, 1.0]), degree=2)
+    below = np.linspace(1e-5, 9e-4, 50)
+    points = np.stack([np.full(50, 1.0 - 9.5e-4), -below], axis=-1)
+    found = Descents((outline,)).nearest(points)
+    np.testing.assert_allclose(np.sqrt(found.square), below, rtol=1e-9)
+
+
 def test_parameters_move_with_the_data_as_when_searched_again():
     base = spiral()
     control, change = base.control_points, np.random.default_rng(0).normal(size=base.control_points.shape)

@@ -59,6 +59,12 @@ def multiplicities(knots: Reals) -> tuple[Reals, NDArray[np.intp]]:
     return np.unique(knots, return_counts=True)
 
 
+def corners(knots: Reals, degree: int) -> Reals:
+    """Parameters (m,) at which a spline may have a corner: its ends, and knots as many times there as its degree."""
+    places, counts = multiplicities(knots)
+    return places[counts >= degree]
+
+
 def spans(knots: Reals, degree: int, u: ArrayLike) -> NDArray[np.intp]:
     """Indices j (...) of the spans knots[j] <= u < knots[j + 1]; parameters past an end belong to the end's span."""
     found = np.searchsorted(knots, np.asarray(u, dtype=np.float64), side="right") - 1

@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 
 from bladewright.errors import GeometryError
 from bladewright.numerics.elementary import Array, dot, length
-from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.basis import Reals, corners
 from bladewright.nurbs.bezier import Patches, Samples, patches, sampled
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.descent import polished
@@ -142,9 +142,11 @@ LEAST_ACROSS = 20
 """Samples across a surface at least, however few its patches: with 5 across a prismatic blade that leans, 7 of 2,200
 points ended at a corner a twentieth of the chord off, with 10 none (design/matching.md)."""
 OTHER_SHAPE_RATIO = 4.0
-"""Another shape is tried too where its nearest sample is at most this many times further away than the nearest of all:
+"""Another smooth piece is tried too where its nearest sample is at most this many times as far as the nearest of all:
 with 2 a few of 8,000 points beside a thin edge are found on its wrong side, in as much time
 (design/nurbs_constants.md)."""
+OFF_CORNER = 0.01
+"""distance from the ends of a patch, along u, from which descents start: small against the way between two samples"""
 JOINT_BAND = 0.02
 """Distance from the last u, of the domain, within which a place on one of two shapes may be nearer on the other. Wider
 bands cost descents that change nothing."""
@@ -197,13 +199,21 @@ class Descents:
 
     @cached_property
     def samples(self) -> tuple[Samples, tuple[tuple[NDArray[np.intp], cKDTree], ...]]:
-        """Samples of all patches, and for each shape the indices of its own, with their search tree."""
+        """Samples of all patches, and for each smooth piece the indices of its own, with their search tree.
+
+        Beside the corner of a blunt edge, face and side have nearest places of their own.
+        """
         along, across = SAMPLES[1 + (self.patches.degrees[1] > 0)]
         if across > 1:
             across = max(across, -(-LEAST_ACROSS // self.patches.shape[1]))
         found = sampled(self.patches, along, across)
-        second = (len(self.shapes) > 1) & (self.patches.low[found.patch, 0] < 0.0)
-        own = [np.flatnonzero(second == k) for k in range(len(self.shapes))]
+        ends = [
+            sign * corners(*(each.knots, each.degree) if isinstance(each, Curve) else (each.knots_u, each.degree_u))
+            for sign, each in zip((1.0, -1.0), self.shapes, strict=False)
+        ]
+        middles = np.mean([self.patches.low[:, 0], self.patches.high[:, 0]], axis=0)
+        piece = np.searchsorted(np.unique(np.concatenate(ends)), middles)[found.patch]
+        own = [np.flatnonzero(piece == k) for k in np.unique(piece)]
         return found, tuple((rows, cKDTree(found.points[rows])) for rows in own)
 
     def nearest(self, points: Reals, start: Places | None = None, *, converged: float = CONVERGED) -> Places:
@@ -222,7 +232,9 @@ class Descents:
                 [own[index[some]] for (own, _), (_, index), some in zip(trees, queries, rows, strict=True)]
             )
             every = np.concatenate(rows)
-            square, u, v = self._descended(points, every, samples.patch[chosen], samples.local[chosen], converged)
+            # inside its piece, as a descent that starts at a corner may take either way
+            local = np.clip(samples.local[chosen], *np.array([[OFF_CORNER, 0.0], [1.0 - OFF_CORNER, 1.0]]))
+            square, u, v = self._descended(points, every, samples.patch[chosen], local, converged)
             around = np.where(u < 0.0, -u, u)
         else:
             every, around = np.arange(len(points)), start.u

@@ -71,9 +71,12 @@ class ChannelCurves:
         return replace(path, matched="edges")
 
     def edge(self, name: str, metre: float) -> ThroughPoints:
-        """An edge as a curve through a few points that reaches past both walls."""
-        line = self._reaching_past_walls(name, EDGE_OVERREACH)
-        t = np.concatenate([[-EDGE_OVERREACH], CURVE_PLACES, [1.0 + EDGE_OVERREACH]])
+        """An edge as a curve through a few points that reaches past both walls, as far as these may be off, too."""
+        walls = max(float(cumulative_length(self.values(wall, CURVE_PLACES))[-1]) for wall in WALLS)
+        own = float(cumulative_length(self.values(name, CURVE_PLACES))[-1])
+        share = EDGE_OVERREACH + 2.0 * WALL_DISTANCE * walls / own
+        line = self._reaching_past_walls(name, share)
+        t = np.concatenate([[-share], CURVE_PLACES, [1.0 + share]])
         at = np.linspace(t[0], t[-1], EDGE_POINTS)
         return ThroughPoints(points=_points(np.stack([np.interp(at, t, axis) for axis in line.T], axis=-1), metre))
 

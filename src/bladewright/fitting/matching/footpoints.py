@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.basis import Reals, corners
 from bladewright.nurbs.closest import CONVERGED, Descents, Places
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.surface import Surface
@@ -95,8 +95,7 @@ def _facing_corners(footpoints: Footpoints, sides: Sequence[Side]) -> Footpoints
     corner = np.zeros(len(footpoints.u), dtype=bool)
     for number, side in enumerate(sides):
         knots, degree = (side.knots, side.degree) if isinstance(side, Curve) else (side.knots_u, side.degree_u)
-        kinks = np.unique(knots[degree - 1 :][knots[degree - 1 :] == knots[: len(knots) - degree + 1]])
-        corner |= (footpoints.side == number) & np.isin(footpoints.u, kinks)
+        corner |= (footpoints.side == number) & np.isin(footpoints.u, corners(knots, degree))
     way = footpoints.miss - np.sum(footpoints.miss * footpoints.beyond, axis=-1)[:, None] * footpoints.beyond
     size = np.sqrt(np.sum(way**2, axis=-1))
     corner &= np.abs(np.sum(way * footpoints.normals, axis=-1)) < FACING * size
