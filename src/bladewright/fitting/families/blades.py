@@ -10,7 +10,7 @@ from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.blade.native.blade import Blade
 from bladewright.designs import Design, unit_at
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.assessment.acceptance import MatchTarget
+from bladewright.fitting.assessment.acceptance import SHARED_VARIANCE, MatchTarget
 from bladewright.fitting.families.flow_path import ChannelCurves
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
 from bladewright.fitting.families.laws import counts_of, nearest_law, part_along_span, with_mean_laws, with_stations_of
@@ -20,12 +20,14 @@ from bladewright.fitting.free_parameters import EDGES, FreeParameters, gauge_par
 from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.scales import check_bounds, part_range
-from bladewright.fitting.matching.search import Match, Task, searched
+from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
 from bladewright.fitting.model_selection.selection import (
     GUESS_NOISE,
     QUICK_POINTS,
+    SETTLED_RICH,
     SEVERAL_POINTS,
     THOROUGH_POINTS,
+    determined,
     selected_match,
 )
 from bladewright.fitting.model_selection.structure import INITIAL_BLADES, structure_of
@@ -84,7 +86,8 @@ def matched_blade(
     check_bounds(first, task.free(first), task.bounds)
     structure = None if like is None else structure_of(like)
     found, reason = selected_match(task, first, target, like=structure, guessed=first is not start)
-    if kind.through_points is not None and own and is_far(found, target):
+    misfit = is_far(found, target) and found.noise_estimate.correlation > SHARED_VARIANCE
+    if kind.through_points is not None and own and misfit:
         outlined = _through_points(task, kind, found, target)
         found, reason = min(filter(None, ((found, reason), outlined)), key=lambda each: criterion(each[0], target))
     return found, "; ".join(filter(None, (reason, "" if own else WALLS_HELD_NOTE)))
@@ -101,8 +104,10 @@ def _through_points(task: Task, kind: FitFamily, match: Match, target: MatchTarg
     parts = [kind.through_points(each, CONTOUR_POINTS) for each in _shapes_of(design.section)]
     first = replace(design, section=_laws(parts, dict.fromkeys(counts_of(parts[MIDDLE]), LAW_COUNT)))
     inliers = task.thinned(len(match.rows)).part(np.flatnonzero(match.rows))
+    some = replace(inliers.thinned(SEVERAL_POINTS), allow_outliers=False)
     try:
-        return selected_match(replace(inliers, allow_outliers=False), first, target, like=None, guessed=True)
+        found = searched(some, first, min_reduction=ROUGH_REDUCTION, settled=SETTLED_RICH, fading=True)
+        return determined(some, found) if target.open else (found, "")
     except (DesignError, FitError):
         return None
 
