@@ -212,7 +212,7 @@ class Descents:
             for sign, each in zip((1.0, -1.0), self.shapes, strict=False)
         ]
         middles = np.mean([self.patches.low[:, 0], self.patches.high[:, 0]], axis=0)
-        piece = np.searchsorted(np.unique(np.concatenate(ends)), middles)[found.patch]
+        piece = np.asarray(np.searchsorted(np.unique(np.concatenate(ends)), middles))[found.patch]
         own = [np.flatnonzero(piece == k) for k in np.unique(piece)]
         return found, tuple((rows, cKDTree(found.points[rows])) for rows in own)
 

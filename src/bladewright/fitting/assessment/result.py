@@ -1,8 +1,10 @@
 """What a fit hands back: the design, how well it matches the cloud, and its report for JSON and for people."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -11,53 +13,17 @@ from numpy.typing import NDArray
 
 from bladewright.designs import Design, unit_at
 from bladewright.display import Shown
+from bladewright.fitting.assessment.deviation import FIGURES, REGIONS, Deviation, by_region, deviation_of
 from bladewright.frozen import FrozenRecord
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 
-REGIONS = ("sides", "leading edge", "trailing edge", "ends")
-"""regions of a blade in which a point of a cloud may lie"""
-FIGURES = ("mean", "rms", "percentile_99", "maximum")
-"""figures of a deviation that are reported"""
 LISTED_OUTLIERS = 1000
 """outliers that are listed; the count is that of all"""
 MILLIMETRES = 1.0 / UNITS["mm"]
 """millimetres in a metre"""
 FEW_PARAMETERS = 30
 """parameters up to which the text shows all of them; with more it shows the doubtful ones"""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Deviation:
-    """Distances of some points of a cloud from the surface [m]."""
-
-    count: int
-    mean: float
-    rms: float
-    percentile_99: float
-    maximum: float
-
-    def to_dict(self) -> dict[str, float]:
-        """The figures, for JSON."""
-        return asdict(self)
-
-
-def deviation_of(distances: Reals) -> Deviation:
-    """The figures of distances (n,) [m]; all 0 where there are none."""
-    if len(distances) == 0:
-        return Deviation(count=0, mean=0.0, rms=0.0, percentile_99=0.0, maximum=0.0)
-    return Deviation(
-        count=len(distances),
-        mean=float(np.mean(distances)),
-        rms=float(np.sqrt(np.mean(distances**2))),
-        percentile_99=float(np.percentile(distances, 99.0)),
-        maximum=float(np.max(distances)),
-    )
-
-
-def by_region(distances: Reals, regions: NDArray[np.str_]) -> dict[str, Deviation]:
-    """The figures of each region that has points."""
-    return {name: deviation_of(distances[regions == name]) for name in REGIONS if np.any(regions == name)}
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -194,8 +194,7 @@ TRIED_SHARES = (1.0, 0.75, 0.5, 0.25, 0.0)
 """which of the structures that are predicted to do are searched, from that of fewest parameters, until one does
 (design/matching_constants.md)"""
 SETTLED_RICH = 0.9
-"""ratio of the misfits of two rounds above which the search of a rich structure has settled: one that is still on its
-way is wider than what it leaves needs (design/matching.md)."""
+"""ratio of the misfits of two rounds above which the search of a rich structure has settled (design/matching.md)"""
 RICHER_GAIN = 0.6
 """ratio of the misfits of two rich structures above which a richer one is of no use: a third as many control points
 again bring a cubic spline nearer by (3/4)^4, a third, half as many by a fifth (de Boor 1978, chapter 12)."""
@@ -222,39 +221,32 @@ class _Selection:
     def rich(self, match: Match, target: MatchTarget, *, sampled: bool = False) -> Match:
         """The match of a rich structure, and of ever richer ones until one is near enough or comes hardly nearer.
 
-        One is enough where a structure or a number of parameters is asked for. Where it is to be `sampled`, the first
-        has no more control points along the chord than its samples determine. In space, where points are exact or
-        something is asked, a structure loses what it does not need before it grows.
+        Where it is to be `sampled`, the first has no more control points along the chord than its samples determine. In
+        space, where points are exact or something is asked, a structure loses what it does not need before it grows.
         """
-        found, near = match, partial(_is_near, tolerance=target.tolerance)
-        least = NEAR * match.model.chord if target.tolerance is None else target.tolerance
+        found, least = match, target.tolerance or NEAR * match.model.chord
+        search = partial(searched, min_reduction=ROUGH_REDUCTION, settled=SETTLED_RICH, fading=True)
         shown = len(self.task.points), rows_shown(match.state.footpoints.v[match.rows])
-        while found is match or (
-            has_systematic_misfit(found)
-            and not near(found)
-            and (target.open or (target.tolerance is not None and not self.holds(found, target.tolerance)))
-        ):
+        while found is match or (has_systematic_misfit(found) and not self._is_enough(found, target)):
             try:
                 slim = self.task.dimension == 3 and (not target.open or is_exact(found))
                 about = self._without_surplus(found) if slim and found is not match else found.design
                 first = partial(rich_structure, sampled=sampled)
                 widened = first if found is match else partial(wider_structure, slim=slim)
                 design = widened_where_feasible(about, widened(about, self.task.free(about), *shown))
-                richer = searched(
-                    self.task,
-                    design,
-                    noise=found.rms,
-                    min_reduction=ROUGH_REDUCTION,
-                    enough=lambda each: each.maximum <= least,
-                    settled=SETTLED_RICH,
-                    fading=True,
-                )
+                richer = search(self.task, design, noise=found.rms, enough=lambda each: each.maximum <= least)
             except (DesignError, FitError):
                 break
             before, found = found, richer if found is match or richer.rms < found.rms else found
             if before is not match and min(richer.rms / before.rms, richer.maximum / before.maximum) > RICHER_GAIN:
                 break
         return found
+
+    def _is_enough(self, rich: Match, target: MatchTarget) -> bool:
+        """Whether a rich match needs no richer one: where nothing is asked, exact points are met more nearly."""
+        if target.open:
+            return rich.maximum <= (NEAR if is_exact(rich) else NEAR_EVERYWHERE) * rich.model.chord
+        return target.tolerance is None or self.holds(rich, target.tolerance)
 
     def _without_surplus(self, rich: Match) -> Design:
         """The design of the fewest control points that is predicted to leave hardly more than a rich match."""
@@ -401,12 +393,6 @@ class _Selection:
             if found.misfit < LARGEST_PREDICTED * prediction.rms:
                 break
         return found
-
-
-def _is_near(rich: Match, tolerance: float | None) -> bool:
-    """Whether a rich match keeps a tolerance [m]; without one exact points are met more nearly."""
-    trusted = (NEAR if is_exact(rich) else NEAR_EVERYWHERE) * rich.model.chord
-    return rich.maximum <= (trusted if tolerance is None else tolerance)
 
 
 def _with_corners_held(task: Task) -> Task:
