@@ -87,7 +87,7 @@ def matched_blade(
     structure = None if like is None else structure_of(like)
     found, reason = selected_match(task, first, target, like=structure, guessed=first is not start)
     misfit = is_far(found, target) and found.noise_estimate.correlation > SHARED_VARIANCE
-    if kind.through_points is not None and own and misfit:
+    if kind.through_points is not None and own and misfit and target.parameters is None:
         outlined = _through_points(task, kind, found, target)
         found, reason = min(filter(None, ((found, reason), outlined)), key=lambda each: criterion(each[0], target))
     return found, "; ".join(filter(None, (reason, "" if own else WALLS_HELD_NOTE)))
@@ -101,11 +101,14 @@ def _through_points(task: Task, kind: FitFamily, match: Match, target: MatchTarg
     """
     assert kind.through_points is not None  # noqa: S101 - asked of the family that has them
     design: Any = match.design
-    parts = [kind.through_points(each, CONTOUR_POINTS) for each in _shapes_of(design.section)]
-    first = replace(design, section=_laws(parts, dict.fromkeys(counts_of(parts[MIDDLE]), LAW_COUNT)))
     inliers = task.thinned(len(match.rows)).part(np.flatnonzero(match.rows))
     some = replace(inliers.thinned(SEVERAL_POINTS), allow_outliers=False)
     try:
+        parts = [kind.through_points(each, CONTOUR_POINTS) for each in _shapes_of(design.section)]
+        section = _laws(parts, dict.fromkeys(counts_of(parts[MIDDLE]), LAW_COUNT))
+        if section is None:
+            return None
+        first = replace(design, section=section)
         found = searched(some, first, min_reduction=ROUGH_REDUCTION, settled=SETTLED_RICH, fading=True)
         return determined(some, found) if target.open else (found, "")
     except (DesignError, FitError):
