@@ -9,8 +9,6 @@ from scipy.spatial import cKDTree
 from scipy.stats import binomtest
 
 from bladewright.fitting.assessment.coverage import (
-    CONFIDENCE,
-    EDGE_PARAMETERS,
     NORMAL_95,
     ShapeBands,
     foreign_edges,
@@ -25,7 +23,16 @@ from bladewright.fitting.assessment.result import with_unit
 from bladewright.fitting.initial_guess.blade import AXES_HINT
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS
 from bladewright.fitting.matching.footpoints import Footpoints
-from bladewright.fitting.matching.noise import EXACT, LARGEST_GROUP, NEIGHBOURS, groups
+from bladewright.fitting.matching.noise import (
+    BETWEEN_EDGES,
+    EDGES,
+    EXACT,
+    LARGEST_GROUP,
+    NEIGHBOURS,
+    SIGNIFICANCE,
+    crowded_at_edges,
+    groups,
+)
 from bladewright.fitting.matching.search import Match
 from bladewright.nurbs.basis import Reals
 
@@ -54,9 +61,8 @@ HALF_BLADE_WIDTH = 0.5
 SHEET_THICKNESS = 3e-3
 """thickness, of the chord, below which no blade is. Two sides laid through one side of Aachen's stator were 0.2 % of
 the chord apart; the thinnest example, an impeller, has 1.3 %."""
-MIN_SIDE_SHARE, BETWEEN_EDGES = 0.1, 0.1
-"""share of the points between the edges below which a side is not shown; `BETWEEN_EDGES` is where the edges end, in
-u."""
+MIN_SIDE_SHARE = 0.1
+"""share of the points between the edges below which a side is not shown"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,12 +105,19 @@ def failures_of(
         )
     # points off a true surface lie to either side of it: the sign test (Dixon and Mood 1946)
     inside = np.flatnonzero(outliers & (measurement.deviations < 0.0))
-    if target.open and binomtest(len(inside), max(off, 1), alternative="greater").pvalue < 1.0 - CONFIDENCE:
+    if target.open and binomtest(len(inside), max(off, 1), alternative="greater").pvalue < SIGNIFICANCE:
         failures.append(
             f"{len(inside)} of {off} outliers lie inside the blade, up to "
             f"{with_unit(design, np.max(distances[inside]), 2)} from its sides: is the shape not found there, or the "
             "blade worn? Leave them out, give a start, or state a tolerance"
         )
+    crowded = crowded_at_edges(outliers, measurement.footpoints) if target.open else {}
+    failures += [
+        f"{np.count_nonzero(rows)} of {off} outliers lie inside the {name}, up to "
+        f"{with_unit(design, np.max(distances[rows]), 2)} from it, more than by chance: is it not found there, or "
+        "worn? Leave them out, give a start, or state a tolerance"
+        for name, rows in crowded.items()
+    ]
     worst = int(np.flatnonzero(inliers)[np.argmax(distances[inliers])])
     if target.tolerance is not None and distances[worst] > target.tolerance:
         failures.append(
@@ -148,7 +161,7 @@ def _limits(bands: ShapeBands, match: Match) -> tuple[Reals, NDArray[np.bool_]]:
     sides, edges = (each * match.model.chord for each in GROSS_DEVIATION)
     known = bands.half_widths <= edges
     at_edge, at_end = np.zeros_like(known), np.zeros_like(known)
-    for end in EDGE_PARAMETERS.values():
+    for end in EDGES.values():
         at_edge |= (np.abs(bands.u - end) < BETWEEN_EDGES) & np.any(known[bands.u == end])
         at_end |= (np.abs(bands.v - end) < 0.5) & np.any(known[bands.v == end])
     bare = (bands.past_edge & at_edge) | (bands.past_end & at_end & known)
@@ -185,7 +198,7 @@ def _bare_notes(bands: ShapeBands, match: Match) -> list[str]:
     """Edges and ends without points on a part of the blade, where they are known less well than is trusted."""
     limits, bare = _limits(bands, match)
     near = np.minimum(bands.u, 1.0 - bands.u) < BETWEEN_EDGES
-    edges = [(name, np.abs(bands.u - end) < BETWEEN_EDGES, "v") for name, end in EDGE_PARAMETERS.items()]
+    edges = [(name, np.abs(bands.u - end) < BETWEEN_EDGES, "v") for name, end in EDGES.items()]
     ends = [(name, ~near & (np.abs(bands.v - end) < 0.5), "u") for name, end in END_PARAMETERS.items()]
     found = []
     for name, there, letter in edges + ends:

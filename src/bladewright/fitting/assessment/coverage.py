@@ -13,7 +13,7 @@ from bladewright.fitting.assessment.estimates import ParameterEstimates
 from bladewright.fitting.free_parameters import parameters_of_curve
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS
 from bladewright.fitting.matching.footpoints import Side, footpoints_at
-from bladewright.fitting.matching.noise import EXACT
+from bladewright.fitting.matching.noise import EDGES, EXACT, SIGNIFICANCE
 from bladewright.fitting.matching.search import Match
 from bladewright.numerics.robust import DEVIATION_OVER_MEDIAN
 from bladewright.nurbs.basis import Reals
@@ -25,8 +25,6 @@ ROW_SPREAD_OF_NOISE = 2.0
 same."""
 WIDTH_OVER_SPREAD = 4.0 / DEVIATION_OVER_MEDIAN
 """width of evenly scattered values over the deviation that the median of their distances from the middle tells"""
-EDGE_PARAMETERS = {"leading edge": 0.0, "trailing edge": 1.0}
-"""u of the two edges"""
 PARTS = 5
 """parts of the span, and of the chord, in each of which both sides are looked at"""
 COVERED_SHARE = 0.5
@@ -47,8 +45,6 @@ PLACES = {2: (41, 1), 3: (21, 11)}
 dimension; they bound the time"""
 NORMAL_95 = float(ndtri(0.975))
 """standard deviations to either side within which 95 % of normal errors are [-]"""
-CONFIDENCE = 0.999
-"""with which points are nearer to a face than to a round edge: by the ratio of their variances (Fisher 1925) [-]"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -101,7 +97,7 @@ def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:
     footpoints, sides = match.state.footpoints, match.state.shape.sides
     part = _part_of(footpoints.side, footpoints.v)
     uncovered = {}
-    for name, end in EDGE_PARAMETERS.items():
+    for name, end in EDGES.items():
         away = np.where(match.rows, np.abs(footpoints.u - end), np.inf)
         order = np.argsort(away, kind="stable")
         nearest = order[np.unique(part[order], return_index=True)[1]]
@@ -193,7 +189,7 @@ def foreign_edges(match: Match) -> dict[str, float]:
         return {}
     points, feet = match.problem.cloud_residuals.points[match.rows], match.state.footpoints.part(match.rows)
     sides, found = match.state.shape.sides, {}
-    for name, end in EDGE_PARAMETERS.items():
+    for name, end in EDGES.items():
         upper_side, at_end = np.zeros(len(points), dtype=np.intp), np.full(len(points), end)
         edge = footpoints_at(points, sides, upper_side, at_end, feet.v)
         inside = np.abs(at_end - INSIDE)
@@ -215,7 +211,7 @@ def foreign_edges(match: Match) -> dict[str, float]:
         own, arc = float(np.sum(feet.distances[rows] ** 2)), _arc(along[rows], height[rows])
         free = len(rows) - unknowns
         others = (own, len(rows)), (arc, len(rows) - round_unknowns)
-        if all(other / count * free > fdtri(count, free, CONFIDENCE) * left for other, count in others):
+        if all(other / count * free > fdtri(count, free, 1.0 - SIGNIFICANCE) * left for other, count in others):
             found[name] = width
     return found
 

@@ -13,6 +13,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 from scipy.special import ndtri
+from scipy.stats import binomtest
 
 from bladewright.fitting.clouds.thinning import even_subset, random_subset
 from bladewright.fitting.matching.footpoints import Footpoints
@@ -69,6 +70,14 @@ EXACT = 1e-4
 """distance to which exact points are to be met, of the extent of the cloud or of the chord. No point nearer than that
 is an outlier, as those at an edge lie further off than the noise that all others show; half and twice change nothing
 measured (design/matching_constants.md)."""
+
+
+EDGES, BETWEEN_EDGES = {"leading edge": 0.0, "trailing edge": 1.0}, 0.1
+"""u of the two edges, and distance from them, in u, from which points lie between them (`BETWEEN_EDGES`)"""
+CROWD = 2
+"""neighbours that are outliers beside one of a part that is not found: of 1 % that scatter, 3 in 1,000 have so many."""
+SIGNIFICANCE = 1e-3
+"""probability of what is called no chance: the level of tests whose null hypothesis is a good match"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -199,6 +208,27 @@ def groups(linked: NDArray[np.bool_], index: NDArray[np.intp]) -> NDArray[np.int
     start, way = np.nonzero(linked)
     graph = csr_array((np.ones(len(start), dtype=np.int8), (start, index[start, way])), shape=(len(index),) * 2)
     return np.asarray(connected_components(graph, directed=False)[1], dtype=np.intp)
+
+
+def crowded_at_edges(outliers: NDArray[np.bool_], footpoints: Footpoints) -> dict[str, NDArray[np.bool_]]:
+    """Which of n points are outliers inside the blade at an edge, by name, where more are than chance puts there.
+
+    Outliers lie anywhere, to either side of a true surface; those of an edge that is not found lie at it, and inside
+    (binomial test: Clopper and Pearson 1934).
+    """
+    found, off, inside = {}, int(np.count_nonzero(outliers)), outliers & (footpoints.heights < 0.0)
+    for name, end in EDGES.items():
+        at_edge = np.abs(footpoints.u - end) < BETWEEN_EDGES
+        share, crowded = 0.5 * float(np.mean(at_edge)), inside & at_edge
+        count = int(np.count_nonzero(crowded))
+        if count and binomtest(count, off, share, alternative="greater").pvalue < SIGNIFICANCE:
+            found[name] = crowded
+    return found
+
+
+def beside_others(outliers: NDArray[np.bool_], points: Reals, footpoints: Footpoints) -> NDArray[np.bool_]:
+    """Which of n points (n, d) are outliers with others beside them, which scattered ones hardly have."""
+    return outliers & (np.sum(outliers[neighbourhood_of(points, footpoints).index], axis=1) >= CROWD)
 
 
 COMPARED_POINTS = 20_000

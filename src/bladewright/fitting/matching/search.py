@@ -16,7 +16,7 @@ from bladewright.errors import BladewrightError, DesignError, FitError
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.matching.blade_ends import BladeEnds, blade_ends_of, edge_overhang_of
 from bladewright.fitting.matching.footpoints import nearest_footpoints
-from bladewright.fitting.matching.noise import EXACT, NoiseEstimate, noise_of
+from bladewright.fitting.matching.noise import EXACT, NoiseEstimate, beside_others, crowded_at_edges, noise_of
 from bladewright.fitting.matching.residuals import CloudResiduals, MatchProblem, PlacedCloud, regularisation_of
 from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.models.model import Model, model_of
@@ -294,20 +294,25 @@ def evaluated(task: Task, design: Design, *, noise: float) -> Match:
 
 
 def without_false_outliers(task: Task, match: Match) -> Match:
-    """A match of the same structure to all points, where half as many are outliers of the design that it leads to.
+    """A match of the same structure to those outliers too that may be points of the blade, where it takes most of them.
 
-    A nose that is not found leaves its own points out, and what is searched without them never finds it.
+    A nose that is not found leaves its own points out, and what is searched without them never finds it. Outliers are
+    doubted that crowd at an edge, and where the misfit is systematic those beside each other.
     """
-    if np.all(match.noise_estimate.inliers) or not has_systematic_misfit(match):
+    outliers, feet = ~match.noise_estimate.inliers, match.state.footpoints
+    doubted = beside_others(outliers, task.points, feet) if has_systematic_misfit(match) else np.zeros_like(outliers)
+    for crowded in crowded_at_edges(outliers & ~match.ends.on_end_face, feet).values():
+        doubted = doubted | crowded
+    if not np.any(doubted):
         return match
-    every = replace(task, allow_outliers=False)
+    every = replace(task.part(np.flatnonzero(~outliers | doubted)), allow_outliers=False)
     try:
         found = searched(every, match.design, noise=match.rms, rounds=QUICK_ROUNDS + 1, min_reduction=ROUGH_REDUCTION)
         found = evaluated(task, found.design, noise=found.rms)
     except FitError:
         return match
-    before, after = (np.count_nonzero(~each.noise_estimate.inliers) for each in (match, found))
-    return found if 2 * after < before else match
+    left = np.count_nonzero(~found.noise_estimate.inliers & doubted)
+    return found if 2 * left < np.count_nonzero(doubted) else match
 
 
 def _prepared_round(
@@ -330,7 +335,7 @@ def _prepared_round(
         float(np.sqrt(np.mean(footpoints.distances[noise_estimate.inliers & ~ends.on_end_face] ** 2))) / model.chord
     )
     # of a cloud without noise the true edge is to cost nothing
-    exact = not task.allow_outliers or noise_estimate.noise < EXACT * float(np.max(np.ptp(points, axis=0)))
+    exact = task.allow_outliers and noise_estimate.noise < EXACT * float(np.max(np.ptp(points, axis=0)))
     scales = scales_of(start, paths, model.chord, task.bounds)
     regularisation = regularisation_of(start, paths, scales.size, ends_shown=ends.in_rows(model.chord))
     cloud_residuals = CloudResiduals(

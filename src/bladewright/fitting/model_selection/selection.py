@@ -144,7 +144,7 @@ def determined(task: Task, match: Match) -> tuple[Match, str]:
         if number and not more:
             break
         held += more
-        match = _searched_further(task.holding(held), match)
+        match = without_false_outliers(task.holding(held), _searched_further(task.holding(held), match))
     return match, "; ".join(filter(None, (note, HELD_NOTE.format(", ".join(held)) if held else "")))
 
 
