@@ -226,9 +226,19 @@ def crowded_at_edges(outliers: NDArray[np.bool_], footpoints: Footpoints) -> dic
     return found
 
 
-def beside_others(outliers: NDArray[np.bool_], points: Reals, footpoints: Footpoints) -> NDArray[np.bool_]:
-    """Which of n points (n, d) are outliers with others beside them, which scattered ones hardly have."""
-    return outliers & (np.sum(outliers[neighbourhood_of(points, footpoints).index], axis=1) >= CROWD)
+def doubted_outliers(
+    outliers: NDArray[np.bool_], points: Reals, footpoints: Footpoints, *, systematic: bool
+) -> NDArray[np.bool_]:
+    """Which of n points (n, d) are outliers that may be points of the blade.
+
+    They crowd at an edge, or where the misfit is `systematic` have others beside them, which scattered ones hardly do.
+    """
+    doubted = np.zeros_like(outliers)
+    for crowded in crowded_at_edges(outliers, footpoints).values():
+        doubted |= crowded
+    if systematic:
+        doubted |= outliers & (np.sum(outliers[neighbourhood_of(points, footpoints).index], axis=1) >= CROWD)
+    return doubted
 
 
 COMPARED_POINTS = 20_000

@@ -16,7 +16,7 @@ from bladewright.errors import BladewrightError, DesignError, FitError
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.matching.blade_ends import BladeEnds, blade_ends_of, edge_overhang_of
 from bladewright.fitting.matching.footpoints import nearest_footpoints
-from bladewright.fitting.matching.noise import EXACT, NoiseEstimate, beside_others, crowded_at_edges, noise_of
+from bladewright.fitting.matching.noise import EXACT, NoiseEstimate, doubted_outliers, noise_of
 from bladewright.fitting.matching.residuals import CloudResiduals, MatchProblem, PlacedCloud, regularisation_of
 from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.models.model import Model, model_of
@@ -116,7 +116,7 @@ class Task:
     precision: Reals | None = None
     """(n,) inverse variances of the points, relative to each other; None where they are equal"""
     allow_outliers: bool = True
-    """whether points may be outliers"""
+    """whether points may be outliers; where none may, edges stand out of exact ones no further than of noisy ones"""
     cut_edges: frozenset[str] = frozenset()
     """edges that are cut off, which may stand out of the cloud"""
     walls: tuple[Reals, ...] = ()
@@ -296,23 +296,19 @@ def evaluated(task: Task, design: Design, *, noise: float) -> Match:
 def without_false_outliers(task: Task, match: Match) -> Match:
     """A match of the same structure to those outliers too that may be points of the blade, where it takes most of them.
 
-    A nose that is not found leaves its own points out, and what is searched without them never finds it. Outliers are
-    doubted that crowd at an edge, and where the misfit is systematic those beside each other.
+    A nose that is not found leaves its own points out, and what is searched without them never finds it.
     """
-    outliers, feet = ~match.noise_estimate.inliers, match.state.footpoints
-    doubted = beside_others(outliers, task.points, feet) if has_systematic_misfit(match) else np.zeros_like(outliers)
-    for crowded in crowded_at_edges(outliers & ~match.ends.on_end_face, feet).values():
-        doubted = doubted | crowded
+    inliers, feet, systematic = match.noise_estimate.inliers, match.state.footpoints, has_systematic_misfit(match)
+    doubted = doubted_outliers(~inliers & ~match.ends.on_end_face, task.points, feet, systematic=systematic)
     if not np.any(doubted):
         return match
-    every = replace(task.part(np.flatnonzero(~outliers | doubted)), allow_outliers=False)
+    every = replace(task.part(np.flatnonzero(inliers | doubted)), allow_outliers=False)
     try:
         found = searched(every, match.design, noise=match.rms, rounds=QUICK_ROUNDS + 1, min_reduction=ROUGH_REDUCTION)
         found = evaluated(task, found.design, noise=found.rms)
     except FitError:
         return match
-    left = np.count_nonzero(~found.noise_estimate.inliers & doubted)
-    return found if 2 * left < np.count_nonzero(doubted) else match
+    return match if np.mean(found.noise_estimate.inliers[doubted]) <= 0.5 else found
 
 
 def _prepared_round(
@@ -331,25 +327,18 @@ def _prepared_round(
     footpoints = nearest_footpoints(points, shape.sides)
     noise_estimate = noise_of(points, footpoints, task.precision, allow_outliers=task.allow_outliers)
     ends = blade_ends_of(points, footpoints, shape, noise_estimate.inliers, task.walls)
-    misfit = (
-        float(np.sqrt(np.mean(footpoints.distances[noise_estimate.inliers & ~ends.on_end_face] ** 2))) / model.chord
-    )
-    # of a cloud without noise the true edge is to cost nothing
+    rows = noise_estimate.inliers & ~ends.on_end_face
+    misfit = float(np.sqrt(np.mean(footpoints.distances[rows] ** 2))) / model.chord
+    # of a cloud without noise the true edge is to cost nothing, but where points are doubted
     exact = task.allow_outliers and noise_estimate.noise < EXACT * float(np.max(np.ptp(points, axis=0)))
     scales = scales_of(start, paths, model.chord, task.bounds)
     regularisation = regularisation_of(start, paths, scales.size, ends_shown=ends.in_rows(model.chord))
     cloud_residuals = CloudResiduals(
         points=points,
-        roots=np.sqrt(task.weights * (noise_estimate.inliers & ~ends.on_end_face)),
+        roots=np.sqrt(task.weights * rows),
         model=model,
         ends=ends,
-        overhang=edge_overhang_of(
-            points,
-            shape.sides,
-            noise_estimate.inliers & ~ends.on_end_face,
-            exact=exact,
-            cut_edges=task.cut_edges,
-        ),
+        overhang=edge_overhang_of(points, shape.sides, rows, exact=exact, cut_edges=task.cut_edges),
         noise=misfit if noise is None else noise,
         precision=np.ones(len(points)) if task.precision is None else task.precision,
     )
