@@ -40,8 +40,9 @@ from bladewright.section.unified_limits import RADII
 
 QUICK_ROUNDS = 4
 """rounds of the search for the closed blade from which the family's first design is taken"""
-SMALLER_RADII = 0.8
-"""share of its edge radii with which a closed blade is built that is refused with all (design/first_guesses.md)"""
+SMALLER_RADII = (0.8, 0.4, 0.2)
+"""shares of its edge radii with which a closed blade is built that is refused with all, one after the other: the wedge
+diffuser needs less than 0.7 (design/matching.md)"""
 WALLS_HELD_NOTE = "hub and shroud are held as they are given"
 """note where the flow path is given"""
 ROUNDNESS_PLACE, ROUNDER_RATIO = 0.04, 1.3
@@ -131,9 +132,10 @@ def _closed_blade(task: Task, header: DesignHeader, like: Any) -> Blade:
     first = first_blade(points, structure=INITIAL_BLADES[-1], name=header.name, length_unit=header.length_unit, **row)
     few = replace(task.thinned(QUICK_POINTS), free=FreeParameters(), bounds={})
     found: Any = searched(few, first, noise=GUESS_NOISE, rounds=QUICK_ROUNDS).design
-    radii = {path: SMALLER_RADII * value for path, value in found.parameters().items() if path.startswith(RADII)}
+    radii = {path: value for path, value in found.parameters().items() if path.startswith(RADII)}
+    smaller = (found.changed({path: share * value for path, value in radii.items()}) for share in SMALLER_RADII)
     # searches hold edge radii at places along the span: between them they may be larger than the thickness holds
-    for design in (found, found.changed(radii), first):
+    for design in (found, *smaller, first):
         try:
             blade: Blade = design.build()
         except DesignError:
