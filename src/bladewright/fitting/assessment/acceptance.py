@@ -22,10 +22,8 @@ from bladewright.fitting.assessment.measurement import Measurement
 from bladewright.fitting.assessment.result import with_unit
 from bladewright.fitting.initial_guess.blade import AXES_HINT
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS
-from bladewright.fitting.matching.footpoints import Footpoints
+from bladewright.fitting.matching.footpoints import BETWEEN_EDGES, EDGE_PARAMETERS, Footpoints
 from bladewright.fitting.matching.noise import (
-    BETWEEN_EDGES,
-    EDGES,
     EXACT,
     LARGEST_GROUP,
     NEIGHBOURS,
@@ -103,20 +101,18 @@ def failures_of(
             f"{with_unit(design, np.max(distances[together]), 2)} off the blade: the shape is not found there, or they "
             "belong to something else; leave them out, or give a start"
         )
-    # points off a true surface lie to either side of it: the sign test (Dixon and Mood 1946)
-    inside = np.flatnonzero(outliers & (measurement.deviations < 0.0))
-    if target.open and binomtest(len(inside), max(off, 1), alternative="greater").pvalue < SIGNIFICANCE:
-        failures.append(
-            f"{len(inside)} of {off} outliers lie inside the blade, up to "
-            f"{with_unit(design, np.max(distances[inside]), 2)} from its sides: is the shape not found there, or the "
-            "blade worn? Leave them out, give a start, or state a tolerance"
-        )
     crowded = crowded_at_edges(outliers, measurement.footpoints) if target.open else {}
+    places = {f"inside the {name}": rows for name, rows in crowded.items()}
+    # points off a true surface lie to either side of it: the sign test (Dixon and Mood 1946)
+    inside = outliers & (measurement.deviations < 0.0)
+    count = int(np.count_nonzero(inside))
+    if target.open and not places and binomtest(count, max(off, 1), alternative="greater").pvalue < SIGNIFICANCE:
+        places = {"inside the blade": inside}
     failures += [
-        f"{np.count_nonzero(rows)} of {off} outliers lie inside the {name}, up to "
-        f"{with_unit(design, np.max(distances[rows]), 2)} from it, more than by chance: is it not found there, or "
-        "worn? Leave them out, give a start, or state a tolerance"
-        for name, rows in crowded.items()
+        f"{np.count_nonzero(rows)} of {off} outliers lie {place}, up to "
+        f"{with_unit(design, np.max(distances[rows]), 2)} from its sides, more than by chance: is the shape not found "
+        "there, or the blade worn? Leave them out, give a start, or state a tolerance"
+        for place, rows in places.items()
     ]
     worst = int(np.flatnonzero(inliers)[np.argmax(distances[inliers])])
     if target.tolerance is not None and distances[worst] > target.tolerance:
@@ -161,7 +157,7 @@ def _limits(bands: ShapeBands, match: Match) -> tuple[Reals, NDArray[np.bool_]]:
     sides, edges = (each * match.model.chord for each in GROSS_DEVIATION)
     known = bands.half_widths <= edges
     at_edge, at_end = np.zeros_like(known), np.zeros_like(known)
-    for end in EDGES.values():
+    for end in EDGE_PARAMETERS.values():
         at_edge |= (np.abs(bands.u - end) < BETWEEN_EDGES) & np.any(known[bands.u == end])
         at_end |= (np.abs(bands.v - end) < 0.5) & np.any(known[bands.v == end])
     bare = (bands.past_edge & at_edge) | (bands.past_end & at_end & known)
@@ -198,7 +194,7 @@ def _bare_notes(bands: ShapeBands, match: Match) -> list[str]:
     """Edges and ends without points on a part of the blade, where they are known less well than is trusted."""
     limits, bare = _limits(bands, match)
     near = np.minimum(bands.u, 1.0 - bands.u) < BETWEEN_EDGES
-    edges = [(name, np.abs(bands.u - end) < BETWEEN_EDGES, "v") for name, end in EDGES.items()]
+    edges = [(name, np.abs(bands.u - end) < BETWEEN_EDGES, "v") for name, end in EDGE_PARAMETERS.items()]
     ends = [(name, ~near & (np.abs(bands.v - end) < 0.5), "u") for name, end in END_PARAMETERS.items()]
     found = []
     for name, there, letter in edges + ends:

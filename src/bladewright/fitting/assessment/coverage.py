@@ -12,8 +12,8 @@ from scipy.special import fdtri, ndtri
 from bladewright.fitting.assessment.estimates import ParameterEstimates
 from bladewright.fitting.free_parameters import parameters_of_curve
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS
-from bladewright.fitting.matching.footpoints import Side, footpoints_at
-from bladewright.fitting.matching.noise import EDGES, EXACT, SIGNIFICANCE
+from bladewright.fitting.matching.footpoints import EDGE_PARAMETERS, Side, footpoints_at
+from bladewright.fitting.matching.noise import EXACT, SIGNIFICANCE
 from bladewright.fitting.matching.search import Match
 from bladewright.numerics.robust import DEVIATION_OVER_MEDIAN
 from bladewright.nurbs.basis import Reals
@@ -97,7 +97,7 @@ def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:
     footpoints, sides = match.state.footpoints, match.state.shape.sides
     part = _part_of(footpoints.side, footpoints.v)
     uncovered = {}
-    for name, end in EDGES.items():
+    for name, end in EDGE_PARAMETERS.items():
         away = np.where(match.rows, np.abs(footpoints.u - end), np.inf)
         order = np.argsort(away, kind="stable")
         nearest = order[np.unique(part[order], return_index=True)[1]]
@@ -189,7 +189,7 @@ def foreign_edges(match: Match) -> dict[str, float]:
         return {}
     points, feet = match.problem.cloud_residuals.points[match.rows], match.state.footpoints.part(match.rows)
     sides, found = match.state.shape.sides, {}
-    for name, end in EDGES.items():
+    for name, end in EDGE_PARAMETERS.items():
         upper_side, at_end = np.zeros(len(points), dtype=np.intp), np.full(len(points), end)
         edge = footpoints_at(points, sides, upper_side, at_end, feet.v)
         inside = np.abs(at_end - INSIDE)

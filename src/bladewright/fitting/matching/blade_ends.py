@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 from bladewright.blade.exact.exact_blade import ExactBlade
 from bladewright.derivatives.complex_step import STEP
 from bladewright.fitting.clouds.thinning import random_subset
-from bladewright.fitting.matching.footpoints import Footpoints, Side, footpoints_at
+from bladewright.fitting.matching.footpoints import EDGE_PARAMETERS, Footpoints, Side, footpoints_at
 from bladewright.fitting.models.model import ModelShape
 from bladewright.numerics.robust import median_deviation
 from bladewright.nurbs.basis import Reals
@@ -245,9 +245,6 @@ ALLOWED_SPACINGS, ALLOWED_SPACINGS_EXACT = 1.5, 15.0
 where the true edge must cost nothing even by chance: it had cost 2.4e-3 of the chord on an impeller and on Rotor 67
 (design/matching.md)."""
 
-EDGE_ENDS = {"leading_edge": 0.0, "trailing_edge": 1.0}
-"""u of both edges"""
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EdgeOverhang:
@@ -295,7 +292,10 @@ def edge_overhang_of(
     u, v = np.repeat([0.0, 1.0], len(stations)), np.tile(stations, 2)
     side = np.zeros(len(u), dtype=np.intp)
     edges = footpoints_at(np.zeros((len(u), points.shape[1])), sides, side, u, v)
-    chosen, shown = [], ~np.isin(u, [end for name, end in EDGE_ENDS.items() if name in cut_edges])
+    chosen, shown = (
+        [],
+        ~np.isin(u, [end for name, end in EDGE_PARAMETERS.items() if name.replace(" ", "_") in cut_edges]),
+    )
     for i, at in enumerate(edges.points):
         offset = cloud - at
         away = np.sum(offset**2, axis=-1)

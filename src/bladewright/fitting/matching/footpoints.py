@@ -14,6 +14,8 @@ from bladewright.nurbs.surface import Surface
 
 Side = Curve | Surface
 """one side of a section or of a blade"""
+EDGE_PARAMETERS, BETWEEN_EDGES = {"leading edge": 0.0, "trailing edge": 1.0}, 0.1
+"""u of the two edges, and distance from them, in u, from which points lie between them (`BETWEEN_EDGES`)"""
 DEEP_SHARE, DEEP_EXTENT = 0.25, 1e-5
 """a point inside the blade is projected onto the other side too where it lies deeper than this share of the thickness
 there (`DEEP_SHARE`), and deeper than this share of the cloud's extent (`DEEP_EXTENT`), which keeps noise out

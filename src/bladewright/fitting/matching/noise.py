@@ -16,7 +16,7 @@ from scipy.special import ndtri
 from scipy.stats import binomtest
 
 from bladewright.fitting.clouds.thinning import even_subset, random_subset
-from bladewright.fitting.matching.footpoints import Footpoints
+from bladewright.fitting.matching.footpoints import BETWEEN_EDGES, EDGE_PARAMETERS, Footpoints
 from bladewright.numerics.robust import DEVIATION_OVER_MEDIAN, median_deviation
 from bladewright.nurbs.basis import Reals
 
@@ -72,8 +72,6 @@ is an outlier, as those at an edge lie further off than the noise that all other
 measured (design/matching_constants.md)."""
 
 
-EDGES, BETWEEN_EDGES = {"leading edge": 0.0, "trailing edge": 1.0}, 0.1
-"""u of the two edges, and distance from them, in u, from which points lie between them (`BETWEEN_EDGES`)"""
 CROWD = 2
 """neighbours that are outliers beside one of a part that is not found: of 1 % that scatter, 3 in 1,000 have so many."""
 SIGNIFICANCE = 1e-3
@@ -214,10 +212,10 @@ def crowded_at_edges(outliers: NDArray[np.bool_], footpoints: Footpoints) -> dic
     """Which of n points are outliers inside the blade at an edge, by name, where more are than chance puts there.
 
     Outliers lie anywhere, to either side of a true surface; those of an edge that is not found lie at it, and inside
-    (binomial test: Clopper and Pearson 1934).
+    (exact binomial test: Conover 1999, section 3.1).
     """
     found, off, inside = {}, int(np.count_nonzero(outliers)), outliers & (footpoints.heights < 0.0)
-    for name, end in EDGES.items():
+    for name, end in EDGE_PARAMETERS.items():
         at_edge = np.abs(footpoints.u - end) < BETWEEN_EDGES
         share, crowded = 0.5 * float(np.mean(at_edge)), inside & at_edge
         count = int(np.count_nonzero(crowded))
