@@ -159,17 +159,18 @@ def naca():
 
 
 def all_examples():
-    """Every example, by its points and its family alone."""
+    """Every example, by its points and its family alone; twice more by other points."""
     for name in examples():
         family = family_of(design_from(parsed(example_text(name), name), name))
-        yield Row(
-            name=f"example-{name}",
-            group="examples",
-            cloud=partial(lambda of, _: clouds.cloud_of(clouds.example(of)), name),
-            options={"family": family},
-            asked={"max of chord": 1e-4, **WELL, "seconds": 60},
-            limit=180.0,
-        )
+        for seed in (4, 5, 6):
+            yield Row(
+                name=f"example-{name}" if seed == 4 else f"again-{seed}-{name}",
+                group="examples" if seed == 4 else "again",
+                cloud=partial(lambda of, draw, _: clouds.cloud_of(clouds.example(of), draw), name, seed),
+                options={"family": family},
+                asked={"max of chord": 1e-4, **WELL, "seconds": 60},
+                limit=180.0,
+            )
 
 
 def drawn():

@@ -10,6 +10,7 @@ from bladewright.fitting.matching.residuals import (
     BEND_SPREAD,
     CAMBER_SPREAD,
     SPREAD_ABOUT_START,
+    USUAL_TANGENT,
     regularisation_of,
 )
 from bladewright.fitting.matching.scales import check_bounds, scales_of
@@ -34,12 +35,20 @@ def even(above, below):
     return SECTION.changed({f"{name}[{i}]": values[i] for name, values in names.items() for i in range(5)})
 
 
-STRAIGHT = even(np.linspace(0.05, 0.13, 5), np.linspace(0.05, 0.13, 5))
+USUAL = {"tangent_in": USUAL_TANGENT[0], "tangent_out": USUAL_TANGENT[0]}
+STRAIGHT = even(np.linspace(0.05, 0.13, 5), np.linspace(0.05, 0.13, 5)).changed(USUAL)
 
 
 def test_a_smooth_design_with_sides_alike_satisfies_its_own_prior():
     np.testing.assert_allclose(rows({}, STRAIGHT), 0.0, atol=1e-12)
     assert np.max(np.abs(rows({}))) > 0.1
+
+
+def test_an_unusual_tangent_counts_by_its_spread_and_more_where_few_points_are_independent():
+    unusual = STRAIGHT.changed("tangent_out", sum(USUAL_TANGENT))
+    np.testing.assert_allclose(np.sum(rows({}, unusual) ** 2), 1.0)
+    shared = regularisation_of(unusual, PATHS, SIZE, independent_share=0.25)
+    np.testing.assert_allclose(np.sum(shared.rhs**2), 4.0)
 
 
 def test_a_parameter_that_goes_as_far_as_it_is_near_counts_one():

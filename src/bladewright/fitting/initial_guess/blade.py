@@ -22,7 +22,7 @@ from bladewright.fitting.initial_guess.channel import (
 )
 from bladewright.fitting.initial_guess.slices import PLACES, fitted_law, plain_law, unified_numbers
 from bladewright.fitting.matching.search import Match, Task, searched
-from bladewright.fitting.model_selection.reshaping import reshaped, with_feasible_edges
+from bladewright.fitting.model_selection.reshaping import widened_where_feasible, with_feasible_edges
 from bladewright.fitting.model_selection.structure import INITIAL_BLADES, Structure
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
@@ -80,7 +80,7 @@ def first_blade(
             break
     if best is None:
         raise FitError(f"no blade that can be built was found near the points ({refusal}); {AXES_HINT}")
-    return with_feasible_edges(reshaped(best.design, structure or FEW))  # type: ignore[return-value]
+    return widened_where_feasible(best.design, structure or FEW)  # type: ignore[return-value]
 
 
 def typical_distance(match: Match) -> float:

@@ -24,7 +24,7 @@ from bladewright.fitting.models.model import Model, ModelShape
 from bladewright.numerics.least_squares import ConstrainedProblem
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import number_paths
-from bladewright.section.unified_limits import THICKNESSES
+from bladewright.section.unified_limits import TANGENTS, THICKNESSES
 
 SPREAD_ABOUT_START = 3.0
 """spread of a parameter about its start, in its own scale. It only holds what nothing else does
@@ -44,6 +44,10 @@ cloud bends (design/matching_constants.md)."""
 CAMBER_SPREAD = 0.3
 """spread of the difference of upper and lower thickness, in their scale: a camber line in the middle is preferred
 (design/matching_constants.md)."""
+
+USUAL_TANGENT = (0.4, 0.3)
+"""usual tangent proportion of a camber line of the unified family, and its spread. A nearly straight camber hardly
+shows them, and they went to their bounds, where metal angles cease to matter (design/matching.md)."""
 
 Terms = list[tuple[str, float]]
 """paths of parameters and their factors in a row"""
@@ -67,10 +71,13 @@ class Regularisation:
         return self.matrix @ z - self.rhs
 
 
-def regularisation_of(start: Design, paths: Sequence[str], size: Reals, *, ends_shown: bool = True) -> Regularisation:
+def regularisation_of(
+    start: Design, paths: Sequence[str], size: Reals, *, ends_shown: bool = True, independent_share: float = 1.0
+) -> Regularisation:
     """The regularisation about a start, for parameters (k,) of scale `size`.
 
-    `ends_shown` tells whether rows of points show both ends of the blade.
+    `ends_shown` tells whether rows of points show both ends of the blade. Tangents are weighed by the share of the
+    points that count as independent, as edge heights are.
     """
     spread = np.where([path.startswith(MERIDIANS) for path in paths], CHANNEL_SPREAD, SPREAD_ABOUT_START)
     corners = set[str]() if ends_shown else _corners(start)
@@ -78,6 +85,10 @@ def regularisation_of(start: Design, paths: Sequence[str], size: Reals, *, ends_
     rows, rhs_rows = [np.diag(1.0 / spread)], [np.zeros(len(paths))]
     values = start.parameters()
     index = {path: i for i, path in enumerate(paths)}
+    usual, width = USUAL_TANGENT[0], USUAL_TANGENT[1] * float(np.sqrt(independent_share))
+    tangents = [i for i, path in enumerate(paths) if path.startswith(TANGENTS)]
+    rows.append((np.diag(size) / width)[tangents])
+    rhs_rows.append(np.array([(usual - values[paths[i]]) / width for i in tangents]))
     for terms, width in chain(_second_differences(start), _thickness_differences(start)):
         free = [index[path] for path, _ in terms if path in index]
         if not free:

@@ -332,7 +332,9 @@ def _prepared_round(
     # of a cloud without noise the true edge is to cost nothing, but where points are doubted
     exact = task.allow_outliers and noise_estimate.noise < EXACT * float(np.max(np.ptp(points, axis=0)))
     scales = scales_of(start, paths, model.chord, task.bounds)
-    regularisation = regularisation_of(start, paths, scales.size, ends_shown=ends.in_rows(model.chord))
+    share = noise_estimate.independent_share(len(paths))
+    shown = ends.in_rows(model.chord)
+    regularisation = regularisation_of(start, paths, scales.size, ends_shown=shown, independent_share=share)
     cloud_residuals = CloudResiduals(
         points=points,
         roots=np.sqrt(task.weights * rows),
@@ -348,7 +350,7 @@ def _prepared_round(
         paths=paths,
         scales=scales,
         regularisation=regularisation.scaled(task.regularisation_factor),
-        independent_share=noise_estimate.independent_share(len(paths)) / task.regularisation_factor**2,
+        independent_share=share / task.regularisation_factor**2,
         hint=footpoints,
         margin=EDGE_RADIUS_MARGIN[points.shape[1]] * task.margin_factor,
     )
