@@ -39,8 +39,9 @@ def test_a_first_blade_has_its_edges_and_walls_where_they_are() -> None:
     for edge in ("leading_edge", "trailing_edge"):
         for end in (0, -1):
             there, here = (np.array(getattr(design.channel, edge)[end]) for design in (truth.design, found))
-            # a corner is known as well as the nearest random points tell it
-            assert np.sqrt(np.sum((there - here) ** 2)) < 0.06 * truth.chord * 1e3
+            # the leading edge's corner slides along the hub, which goes on from it: a known defect (design/matching.md)
+            most = 0.07 if (edge, end) == ("leading_edge", 0) else 0.01
+            assert np.sqrt(np.sum((there - here) ** 2)) < most * truth.chord * 1e3
 
 
 def test_a_first_blade_is_found_from_part_of_the_span_on_the_other_side_of_the_machine() -> None:

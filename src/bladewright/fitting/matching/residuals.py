@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Design, Part
 from bladewright.errors import DesignError
 from bladewright.fitting.families.laws import lines_of
@@ -46,7 +47,7 @@ CAMBER_SPREAD = 0.3
 (design/matching_constants.md)."""
 
 USUAL_TANGENT = (0.4, 0.3)
-"""usual tangent proportion of a camber line of the unified family, and its spread. A nearly straight camber hardly
+"""usual tangent proportion of the camber lines of a unified blade, and its spread. A nearly straight camber hardly
 shows them, and they went to their bounds, where metal angles cease to matter (design/matching.md)."""
 
 Terms = list[tuple[str, float]]
@@ -86,7 +87,7 @@ def regularisation_of(
     values = start.parameters()
     index = {path: i for i, path in enumerate(paths)}
     usual, width = USUAL_TANGENT[0], USUAL_TANGENT[1] * float(np.sqrt(independent_share))
-    tangents = [i for i, path in enumerate(paths) if path.startswith(TANGENTS)]
+    tangents = [i for i, path in enumerate(paths) if path.startswith(TANGENTS) and isinstance(start, UnifiedBlade)]
     rows.append((np.diag(size) / width)[tangents])
     rhs_rows.append(np.array([(usual - values[paths[i]]) / width for i in tangents]))
     for terms, width in chain(_second_differences(start), _thickness_differences(start)):
