@@ -33,15 +33,23 @@ def test_a_first_blade_lies_within_one_percent_of_the_chord() -> None:
     assert _share(first_blade(points, arrangement="annular"), points) < 0.01
 
 
-def test_a_first_blade_has_its_edges_and_walls_where_they_are() -> None:
+SLIDING = pytest.mark.xfail(strict=True, reason="it slides along the hub by 6 % of the chord (design/matching.md)")
+
+
+@pytest.mark.parametrize(
+    ("edge", "end"),
+    [
+        pytest.param("leading_edge", 0, marks=SLIDING),
+        ("leading_edge", -1),
+        ("trailing_edge", 0),
+        ("trailing_edge", -1),
+    ],
+)
+def test_a_first_blade_has_its_corners_within_one_percent_of_the_chord(edge: str, end: int) -> None:
     truth = _truth("radial-turbine")
     found = first_blade(_cloud(truth, 1000), arrangement="annular")
-    for edge in ("leading_edge", "trailing_edge"):
-        for end in (0, -1):
-            there, here = (np.array(getattr(design.channel, edge)[end]) for design in (truth.design, found))
-            # the leading edge's corner slides along the hub, which goes on from it: a known defect (design/matching.md)
-            most = 0.07 if (edge, end) == ("leading_edge", 0) else 0.01
-            assert np.sqrt(np.sum((there - here) ** 2)) < most * truth.chord * 1e3
+    there, here = (np.array(getattr(design.channel, edge)[end]) for design in (truth.design, found))
+    assert np.sqrt(np.sum((there - here) ** 2)) < 0.01 * truth.chord * 1e3
 
 
 def test_a_first_blade_is_found_from_part_of_the_span_on_the_other_side_of_the_machine() -> None:

@@ -227,14 +227,12 @@ def ranked_channels(
 def sliced_channel(machine: Reals, named: dict[str, Reals], *, revolved: bool) -> SlicedChannel:
     """The slices in the channel of one outline; their cambers begin and end at its edges.
 
-    Noses of staggered sections reach past the ends of their camber, so that the edges are moved to these once, unless
-    slices between the edges of the outline are clearly nearer to the points.
+    Noses of staggered sections reach past the ends of their camber, so that the edges are moved to these once.
     """
-    outlined = _sliced(machine, channel_through(named, CHANNEL, revolved=revolved))
-    trimmed = channel_through(_trimmed(outlined.channel, outlined.slices), CHANNEL, revolved=revolved)
-    sliced = _sliced(machine, trimmed)
-    if outlined.mean_distance < CLEARLY_NEARER * sliced.mean_distance:
-        sliced = outlined
+    channel = channel_through(named, CHANNEL, revolved=revolved)
+    slices = _sliced(machine, channel).slices
+    channel = channel_through(_trimmed(channel, slices), CHANNEL, revolved=revolved)
+    sliced = _sliced(machine, channel)
     line = sliced.slices.camber.copy()
     first, last = line[:, :1, 0], line[:, 3:, 0]
     line[..., 0] = (line[..., 0] - first) / np.maximum(last - first, 0.2)
