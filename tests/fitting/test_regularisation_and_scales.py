@@ -10,6 +10,7 @@ from bladewright.fitting.matching.residuals import (
     BEND_SPREAD,
     CAMBER_SPREAD,
     SPREAD_ABOUT_START,
+    TANGENT_SPREAD,
     USUAL_TANGENT,
     regularisation_of,
 )
@@ -44,10 +45,11 @@ def test_a_smooth_design_with_sides_alike_satisfies_its_own_prior():
 
 
 def test_an_unusual_tangent_of_a_blade_counts_by_its_spread_and_more_where_few_points_are_independent():
-    usual = example("centrifugal-impeller").changed("tangent_out", USUAL_TANGENT[0])
-    unusual = usual.changed("tangent_out", sum(USUAL_TANGENT))
+    size = 0.2
+    usual = example("centrifugal-impeller").changed("tangent_out", USUAL_TANGENT)
+    unusual = usual.changed("tangent_out", USUAL_TANGENT + TANGENT_SPREAD * size)
     for design, share, cost in ((usual, 1.0, 0.0), (unusual, 1.0, 1.0), (unusual, 0.25, 4.0)):
-        found = regularisation_of(design, ("tangent_out",), np.ones(1), independent_share=share)
+        found = regularisation_of(design, ("tangent_out",), np.array([size]), independent_share=share)
         np.testing.assert_allclose(np.sum(found.rhs**2), cost, atol=1e-24)
 
 

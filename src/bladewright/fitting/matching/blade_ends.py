@@ -292,10 +292,8 @@ def edge_overhang_of(
     u, v = np.repeat([0.0, 1.0], len(stations)), np.tile(stations, 2)
     side = np.zeros(len(u), dtype=np.intp)
     edges = footpoints_at(np.zeros((len(u), points.shape[1])), sides, side, u, v)
-    chosen, shown = (
-        [],
-        ~np.isin(u, [end for name, end in EDGE_PARAMETERS.items() if name.replace(" ", "_") in cut_edges]),
-    )
+    cut = [end for name, end in EDGE_PARAMETERS.items() if name.replace(" ", "_") in cut_edges]
+    chosen, shown = [], ~np.isin(u, cut)
     for i, at in enumerate(edges.points):
         offset = cloud - at
         away = np.sum(offset**2, axis=-1)

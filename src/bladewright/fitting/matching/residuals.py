@@ -46,12 +46,13 @@ CAMBER_SPREAD = 0.3
 """spread of the difference of upper and lower thickness, in their scale: a camber line in the middle is preferred
 (design/matching_constants.md)."""
 
-USUAL_TANGENT = (0.4, 0.3)
-"""usual tangent proportion of the camber lines of a unified blade, and its spread. A nearly straight camber hardly
-shows them, and they went to their bounds, where metal angles cease to matter (design/matching.md)."""
+USUAL_TANGENT, TANGENT_SPREAD = 0.4, 1.5
+"""usual tangent proportion of the camber lines of a unified blade, and the spread about it, in the scale of tangents.
+Nearly straight cambers hardly show them, and they went to their bounds, where metal angles cease to matter
+(design/matching.md)."""
 
-Terms = list[tuple[str, float]]
-"""paths of parameters and their factors in a row"""
+Row = tuple[list[tuple[str, float]], float, float]
+"""paths of parameters and their factors, the usual value of their sum, and its spread in the scale of the parameters"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -86,11 +87,9 @@ def regularisation_of(
     rows, rhs_rows = [np.diag(1.0 / spread)], [np.zeros(len(paths))]
     values = start.parameters()
     index = {path: i for i, path in enumerate(paths)}
-    usual, width = USUAL_TANGENT[0], USUAL_TANGENT[1] * float(np.sqrt(independent_share))
-    tangents = [i for i, path in enumerate(paths) if path.startswith(TANGENTS) and isinstance(start, UnifiedBlade)]
-    rows.append((np.diag(size) / width)[tangents])
-    rhs_rows.append(np.array([(usual - values[paths[i]]) / width for i in tangents]))
-    for terms, width in chain(_second_differences(start), _thickness_differences(start)):
+    shared = float(np.sqrt(independent_share))
+    tangents = _tangents(start, TANGENT_SPREAD * shared)
+    for terms, usual, width in chain(_second_differences(start), _thickness_differences(start), tangents):
         free = [index[path] for path, _ in terms if path in index]
         if not free:
             continue
@@ -100,7 +99,8 @@ def regularisation_of(
             if path in index:
                 row[0, index[path]] += factor * size[index[path]] / (width * scale)
         rows.append(row)
-        rhs_rows.append(np.array([-sum(factor * values[path] for path, factor in terms) / (width * scale)]))
+        left = usual - sum(factor * values[path] for path, factor in terms)
+        rhs_rows.append(np.array([left / (width * scale)]))
     return Regularisation(matrix=np.concatenate(rows), rhs=np.concatenate(rhs_rows))
 
 
@@ -112,7 +112,7 @@ def _corners(start: Design) -> set[str]:
     return {f"channel.{edge}[{at}]" for edge in EDGES for at in (0, len(getattr(channel, edge)) - 1)}
 
 
-def _second_differences(start: Design) -> Iterator[tuple[Terms, float]]:
+def _second_differences(start: Design) -> Iterator[Row]:
     """Second differences of laws along the span and along the chord."""
     for name in (*SPANWISE, *THICKNESSES, "leading_edge_theta", "leading_edge_y"):
         grid = paths_of(name, getattr(start, name, None))
@@ -125,16 +125,23 @@ def _second_differences(start: Design) -> Iterator[tuple[Terms, float]]:
             yield from _second_differences_of(line)
 
 
-def _second_differences_of(line: Sequence[str]) -> Iterator[tuple[Terms, float]]:
+def _second_differences_of(line: Sequence[str]) -> Iterator[Row]:
     for before, at, after in zip(line, line[1:], line[2:], strict=False):
-        yield [(before, 1.0), (at, -2.0), (after, 1.0)], BEND_SPREAD
+        yield [(before, 1.0), (at, -2.0), (after, 1.0)], 0.0, BEND_SPREAD
 
 
-def _thickness_differences(start: Design) -> Iterator[tuple[Terms, float]]:
+def _thickness_differences(start: Design) -> Iterator[Row]:
     above, below = (paths_of(name, getattr(start, name, None)) for name in THICKNESSES)
     if [len(row) for row in above] == [len(row) for row in below]:
         for pair in zip(chain(*above), chain(*below), strict=True):
-            yield list(zip(pair, (1.0, -1.0), strict=True)), CAMBER_SPREAD
+            yield list(zip(pair, (1.0, -1.0), strict=True)), 0.0, CAMBER_SPREAD
+
+
+def _tangents(start: Design, spread: float) -> Iterator[Row]:
+    if isinstance(start, UnifiedBlade):
+        for path in start.parameters():
+            if path.startswith(TANGENTS):
+                yield [(path, 1.0)], USUAL_TANGENT, spread
 
 
 def paths_of(name: str, law: Any) -> list[list[str]]:

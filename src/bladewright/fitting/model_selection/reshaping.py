@@ -195,10 +195,10 @@ def _has_shape(design: Design) -> bool:
 
 
 RICH_CHORDWISE = {2: 24, 3: 9}
-"""control points along the chord of a rich structure, by dimension. Nine have six spans, whose knots are also those of
-one, two and three: cubic laws of 4, 5 and 6 control points are among them (design/matching.md)."""
+"""control points along the chord of a rich structure, by dimension. Nine have six spans, whose knots include those of
+one, two and three: cubic laws of 4, 5 and 6 control points are special cases of theirs (design/matching.md)."""
 RICH_SPAN = {"thickness": 6, "radius": 4, "": 9}
-"""control points along the span of its laws, by what their names hold; they hold laws of fewer as those do."""
+"""control points along the span of its laws, by what their names say: six hold cubic laws of 4, nine of 4, 5 and 6."""
 SHARES = (1.0, 0.8, 0.6, 0.4, 0.2, 0.0)
 """shares of the further control points of a rich structure that are tried where points are few
 (design/matching_constants.md)."""
@@ -206,7 +206,7 @@ POINTS_PER_PARAMETER = 2
 """points for each parameter of a rich structure at least: published profiles have few points. Half and twice change
 nothing measured (design/matching_constants.md)."""
 RICH_CHANNEL = (9, 9, 6, 6)
-"""control points of the edges, of hub and of shroud; they hold curves of fewer as those do."""
+"""control points of the edges, of hub and of shroud: six hold cubic curves of 4, nine of 4, 5 and 6."""
 
 
 def rich_structure(
