@@ -83,6 +83,7 @@ def selected_match(
     """
     several, many = task.thinned(SEVERAL_POINTS), task.thinned(THOROUGH_POINTS)
     few, noise = task.thinned(QUICK_POINTS) if task.dimension == 3 else several, GUESS_NOISE if guessed else None
+    few = replace(few, on_the_way=guessed and task.dimension == 3)
     found = searched(few, first, noise=noise, min_reduction=ROUGH_REDUCTION)
     found = trusted_or_from_other_edges(several, found, GUESS_NOISE) if task.dimension == 2 and guessed else found
     if target.structured and target.tolerance is None:
@@ -95,10 +96,8 @@ def selected_match(
         # laws that need no control points along the span begin as constants
         found = replace(selection, task=few).well_predicted(found)
         selection = replace(selection, first=found.design)
-    if target.open and found.maximum < NEAR * found.model.chord:
-        rich = found
-    else:
-        rich = selection.rich(found, target, sampled=target.parameters is None)
+    near = target.open and found.maximum < NEAR * found.model.chord
+    rich = found if near else selection.rich(found, target, sampled=target.parameters is None)
     if len(rich.rows) < len(several.points):
         # no richer one has a shape, or none is needed: the first match, of few points, stands
         rich = evaluated(several, rich.design, noise=rich.rms)
