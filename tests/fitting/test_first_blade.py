@@ -8,6 +8,7 @@ from bladewright.blade.native.blade import Blade
 from bladewright.fitting.initial_guess.blade import arranged_channels, first_blade, spans_along_y
 from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.nurbs.closest import closest_on_surface
+from bladewright.section.laws import Span
 from machines import COARSE, built, example
 
 
@@ -50,6 +51,14 @@ def test_a_first_blade_has_its_corners_within_one_percent_of_the_chord(edge: str
     found = first_blade(_cloud(truth, 1000), arrangement="annular")
     there, here = (np.array(getattr(design.channel, edge)[end]) for design in (truth.design, found))
     assert np.sqrt(np.sum((there - here) ** 2)) < 0.01 * truth.chord * 1e3
+
+
+@pytest.mark.parametrize("name", ["metal_angle_in", "metal_angle_out"])
+def test_the_search_of_a_first_blade_leaves_the_metal_angles_of_its_slices(name: str) -> None:
+    truth, span = _truth("propeller"), Span(np.linspace(0.0, 1.0, 6))
+    found = first_blade(_cloud(truth, 1000), arrangement="annular")
+    there, here = (np.real(span.values(getattr(design, name))) for design in (truth.design, found))
+    assert np.max(np.abs(there - here)) < 20.0
 
 
 def test_a_first_blade_is_found_from_part_of_the_span_on_the_other_side_of_the_machine() -> None:

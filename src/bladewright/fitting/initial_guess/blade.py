@@ -14,14 +14,9 @@ from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.errors import BladewrightError, FitError
 from bladewright.fitting.clouds.thinning import even_subset, random_subset, without_isolated_points
 from bladewright.fitting.free_parameters import FreeParameters
-from bladewright.fitting.initial_guess.channel import (
-    CLEAR_DISTANCE,
-    SlicedChannel,
-    machine_coordinates,
-    ranked_channels,
-)
+from bladewright.fitting.initial_guess.channel import SlicedChannel, machine_coordinates, ranked_channels
 from bladewright.fitting.initial_guess.slices import PLACES, fitted_law, plain_law, unified_numbers
-from bladewright.fitting.matching.search import Match, Task, searched
+from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.model_selection.reshaping import widened_where_feasible, with_feasible_edges
 from bladewright.fitting.model_selection.structure import INITIAL_BLADES, Structure
 from bladewright.nurbs.basis import Reals
@@ -32,14 +27,11 @@ AXES_HINT = "x must be the machine axis: say which column is which (--columns), 
 DRAWN_POINTS, SEARCHED_POINTS = 1200, 500
 """points that show the slices, and points of the search (`SEARCHED_POINTS`); they bound the time
 (design/matching_constants.md)."""
-FEW = INITIAL_BLADES[1]
-"""numbers of control points of the blade that is searched"""
+FEW = INITIAL_BLADES[-1]
+"""numbers of control points of the blade that is searched: with those of `INITIAL_BLADES[1]` a propeller, whose slices
+are within 2 deg of its metal angles, was searched away from these to 89 deg (design/matching.md)"""
 NOISE, ROUNDS = 0.03, 3
 """noise assumed of a first blade, of the chord, and rounds of its search (design/matching_constants.md)"""
-INLIER_SHARE = 0.94
-"""share of the points that are surely no outliers"""
-MOST_OUTLINES = 3
-"""outlines that are tried"""
 
 
 def first_blade(
@@ -61,32 +53,21 @@ def first_blade(
     arrangement, channels = arranged_channels(points, arrangement)
     points = points[even_subset(points, DRAWN_POINTS)]
     some = points[random_subset(len(points), SEARCHED_POINTS)]
-    task = Task(points=some, weights=np.ones(len(some)), free=FreeParameters(), bounds={})
+    task = Task(points=some, weights=np.ones(len(some)), free=FreeParameters(), bounds={}, on_the_way=True)
     header: dict[str, Any] = {"name": name, "length_unit": length_unit, "arrangement": arrangement}
     if arrangement == "linear":
         header["pitch"] = (2.0 * float(np.ptp(points[:, 1])) if pitch is None else pitch) / UNITS[length_unit]
     else:
         header["blade_count"] = blade_count
-    best: Match | None = None
     refusal: BladewrightError | None = None
-    for sliced in channels[:MOST_OUTLINES]:
+    for sliced in channels:
         try:
             found = searched(task, with_feasible_edges(_blade_of(sliced, header)), noise=NOISE, rounds=ROUNDS)
         except BladewrightError as error:
-            refusal = error
+            refusal = refusal or error
             continue
-        best = found if best is None or typical_distance(found) < typical_distance(best) else best
-        if typical_distance(best) < CLEAR_DISTANCE:
-            break
-    if best is None:
-        raise FitError(f"no blade that can be built was found near the points ({refusal}); {AXES_HINT}")
-    return widened_where_feasible(best.design, structure or FEW)  # type: ignore[return-value]
-
-
-def typical_distance(match: Match) -> float:
-    """Mean distance of the nearest points, in chords: outliers do not tell one first design from another."""
-    distances = np.sort(match.state.footpoints.distances)
-    return float(np.mean(distances[: int(INLIER_SHARE * len(distances))])) / match.model.chord
+        return widened_where_feasible(found.design, structure or FEW)  # type: ignore[return-value]
+    raise FitError(f"no blade that can be built was found near the points ({refusal}); {AXES_HINT}")
 
 
 def _blade_of(sliced: SlicedChannel, header: dict[str, Any]) -> UnifiedBlade:

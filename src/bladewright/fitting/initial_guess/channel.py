@@ -151,8 +151,6 @@ STATIONS: Reals = np.linspace(0.0, 1.0, 9)
 """v of the slices"""
 MOST_TRIM = 0.2
 """most by which an edge moves to the ends of the cambers, in u (design/first_guesses.md)"""
-CLEAR_DISTANCE = 2e-3
-"""mean distance of the points, in chords, with which no other outline is tried (design/first_guesses.md)"""
 CHANNEL = INITIAL_BLADES[1].channel
 """control points of the channel's curves"""
 LAW_COUNT = 4

@@ -194,10 +194,9 @@ def _has_shape(design: Design) -> bool:
         return False
 
 
-RICH_CHORDWISE = {2: 24, 3: 12}
-"""control points along the chord of a rich structure, by dimension. In space they are what the samples of a section
-determine, and have nine spans, whose knots hold cubic laws of 4 and 6 control points. With 9 Aachen's stator takes 123
-parameters for 0.05 mm, with 12 it takes 31 (design/matching.md)."""
+RICH_CHORDWISE = {2: 24, 3: 9}
+"""control points along the chord of a rich structure, by dimension. Nine have six spans, whose knots include those of
+one, two and three: cubic laws of 4, 5 and 6 control points are special cases of theirs (design/matching.md)."""
 RICH_SPAN = {"thickness": 6, "radius": 4, "": 9}
 """control points along the span of its laws, by what their names say: six hold cubic laws of 4, nine of 4, 5 and 6."""
 SHARES = (1.0, 0.8, 0.6, 0.4, 0.2, 0.0)
