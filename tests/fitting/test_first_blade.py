@@ -1,11 +1,15 @@
 """First blades from points in space."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.blade.native.blade import Blade
+from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.blade import arranged_channels, first_blade, spans_along_y
+from bladewright.fitting.matching.search import Task, evaluated
 from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.nurbs.closest import closest_on_surface
 from bladewright.section.laws import Span
@@ -59,6 +63,17 @@ def test_the_search_of_a_first_blade_leaves_the_metal_angles_of_its_slices(name:
     found = first_blade(_cloud(truth, 1000), arrangement="annular")
     there, here = (np.real(span.values(getattr(design, name))) for design in (truth.design, found))
     assert np.max(np.abs(there - here)) < 20.0
+
+
+def test_the_regularisation_of_a_preliminary_search_counts_against_independent_points() -> None:
+    truth = _truth("compressor-stator")
+    points, start = _cloud(truth, 400), truth.design.changed("stagger", 20.0)
+    task = Task(points=points, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
+    usual, held = (evaluated(replace(task, preliminary=each), start, noise=1e-3) for each in (False, True))
+    share = usual.noise_estimate.independent_share(len(usual.problem.paths))
+    assert share < 0.5
+    first, second = (np.diag(each.problem.regularisation.matrix) for each in (usual, held))
+    np.testing.assert_allclose(second, first / np.sqrt(share))
 
 
 def test_a_first_blade_is_found_from_part_of_the_span_on_the_other_side_of_the_machine() -> None:

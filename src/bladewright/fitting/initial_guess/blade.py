@@ -53,7 +53,7 @@ def first_blade(
     arrangement, channels = arranged_channels(points, arrangement)
     points = points[even_subset(points, DRAWN_POINTS)]
     some = points[random_subset(len(points), SEARCHED_POINTS)]
-    task = Task(points=some, weights=np.ones(len(some)), free=FreeParameters(), bounds={}, on_the_way=True)
+    task = Task(points=some, weights=np.ones(len(some)), free=FreeParameters(), bounds={}, preliminary=True)
     header: dict[str, Any] = {"name": name, "length_unit": length_unit, "arrangement": arrangement}
     if arrangement == "linear":
         header["pitch"] = (2.0 * float(np.ptp(points[:, 1])) if pitch is None else pitch) / UNITS[length_unit]

@@ -119,8 +119,8 @@ class Task:
     """whether points may be outliers; where none may, edges stand out of exact ones no further than of noisy ones"""
     cut_edges: frozenset[str] = frozenset()
     """edges that are cut off, which may stand out of the cloud"""
-    on_the_way: bool = False
-    """whether a design of few control points is only to be begun from: what it misses is no noise"""
+    preliminary: bool = False
+    """whether a search is only to begin another: what its few control points miss is shared by neighbours, no noise"""
     walls: tuple[Reals, ...] = ()
     """(m, 2) points of hub and shroud beside the blade, in (x, r) or (x, z) [m]: they show where it ends"""
     turn: float = 0.0
@@ -335,8 +335,8 @@ def _prepared_round(
     exact = task.allow_outliers and noise_estimate.noise < EXACT * float(np.max(np.ptp(points, axis=0)))
     scales = scales_of(start, paths, model.chord, task.bounds)
     share = noise_estimate.independent_share(len(paths))
-    shown, repeated = ends.in_rows(model.chord), share if task.on_the_way else 1.0
-    regularisation = regularisation_of(start, paths, scales.size, ends_shown=shown, independent_share=share / repeated)
+    shown, own = ends.in_rows(model.chord), 1.0 if task.preliminary else share
+    regularisation = regularisation_of(start, paths, scales.size, ends_shown=shown, independent_share=own)
     cloud_residuals = CloudResiduals(
         points=points,
         roots=np.sqrt(task.weights * rows),
@@ -351,7 +351,7 @@ def _prepared_round(
         start=start,
         paths=paths,
         scales=scales,
-        regularisation=regularisation.scaled(task.regularisation_factor / float(np.sqrt(repeated))),
+        regularisation=regularisation.scaled(task.regularisation_factor / float(np.sqrt(share / own))),
         independent_share=share / task.regularisation_factor**2,
         hint=footpoints,
         margin=EDGE_RADIUS_MARGIN[points.shape[1]] * task.margin_factor,

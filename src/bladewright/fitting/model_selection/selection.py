@@ -83,7 +83,7 @@ def selected_match(
     """
     several, many = task.thinned(SEVERAL_POINTS), task.thinned(THOROUGH_POINTS)
     few, noise = task.thinned(QUICK_POINTS) if task.dimension == 3 else several, GUESS_NOISE if guessed else None
-    few = replace(few, on_the_way=guessed and task.dimension == 3)
+    few = replace(few, preliminary=guessed and task.dimension == 3)
     found = searched(few, first, noise=noise, min_reduction=ROUGH_REDUCTION)
     found = trusted_or_from_other_edges(several, found, GUESS_NOISE) if task.dimension == 2 and guessed else found
     if target.structured and target.tolerance is None:
