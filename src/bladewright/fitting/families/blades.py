@@ -1,7 +1,9 @@
 """From points in space to a blade from sections of a family."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -79,9 +81,8 @@ def matched_blade(
         task = replace(task, free=replace(task.free, walls=True))
     first: Any = start
     if start is None or like is not None:
-        closed = _closed_blade(task, header, like) if start is None else start.build()
-        task.progress("first design of the family")
-        turn, first = _first(task, closed, kind, like, header)
+        closed = _closed_blades(task, header, like) if start is None else iter([start.build()])
+        turn, first = _first_of(task, closed, kind, like, header)
         task = task.turned(turn)
     first = task.free.applied(first) if isinstance(task.free, FreeParameters) else first
     check_bounds(first, task.free(first), task.bounds)
@@ -126,8 +127,8 @@ def _shapes_of(part: Any) -> list[SectionShape]:
     ]
 
 
-def _closed_blade(task: Task, header: DesignHeader, like: Any) -> Blade:
-    """The closed blade of the unified family that a task's points show."""
+def _closed_blades(task: Task, header: DesignHeader, like: Any) -> Iterator[Blade]:
+    """Closed blades of the unified family that a task's points show: one that is searched, and one less near."""
     points, row = task.thinned(THOROUGH_POINTS).points, header.row(like)
     first = first_blade(points, structure=INITIAL_BLADES[-1], name=header.name, length_unit=header.length_unit, **row)
     few = replace(task.thinned(QUICK_POINTS), free=FreeParameters(), bounds={})
@@ -135,13 +136,30 @@ def _closed_blade(task: Task, header: DesignHeader, like: Any) -> Blade:
     radii = {path: value for path, value in found.parameters().items() if path.startswith(RADII)}
     smaller = (found.changed({path: share * value for path, value in radii.items()}) for share in SMALLER_RADII)
     # searches hold edge radii at places along the span: between them they may be larger than the thickness holds
-    for design in (found, *smaller, first):
+    yield from islice(_built((found, *smaller)), 1)
+    # a corner that slides along a wall in the search leaves an edge that crosses the wall twice
+    yield from _built((first,))
+
+
+def _built(designs: Iterable[Any]) -> Iterator[Blade]:
+    """Those of the designs that can be built."""
+    for design in designs:
+        with suppress(DesignError):
+            yield design.build()
+
+
+def _first_of(
+    task: Task, blades: Iterator[Blade], kind: FitFamily, like: Any, header: DesignHeader
+) -> tuple[float, Design]:
+    """What the first of the closed blades gives of which the family has a blade; FitError where none has."""
+    refusal = FitError("no closed blade was found near the points: give a start design")
+    for number, closed in enumerate(blades):
+        task.progress("first design of the family")
         try:
-            blade: Blade = design.build()
-        except DesignError:
-            continue
-        return blade
-    raise FitError("no closed blade was found near the points: give a start design")
+            return _first(task, closed, kind, like, header)
+        except FitError as error:
+            refusal = refusal if number else error
+    raise refusal
 
 
 def _band(task: Task, closed: Blade, v: float) -> Reals:
