@@ -5,7 +5,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from bladewright.fitting.initial_guess.channel import machine_coordinates, pairings
+from bladewright.fitting.clouds.thinning import even_subset, without_isolated_points
+from bladewright.fitting.initial_guess.channel import machine_coordinates, pairings, ranked_channels
 from bladewright.fitting.initial_guess.meridional_outline import alpha_boundary, corner_sets
 from machines import built, example
 
@@ -40,3 +41,19 @@ def test_corners_stand_where_the_outline_does():
     found = np.array([piece[0] for piece in pieces])
     off = np.min(np.sum((found[:, None] - square) ** 2, axis=-1), axis=1) ** 0.5
     assert np.max(off) < 10.0 / 1200.0
+
+
+def test_the_likeliest_channel_follows_the_outline_where_outliers_bend_it():
+    blade, draw = built(example("radial-turbine")), np.random.default_rng(15)
+    u, v = np.meshgrid((1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 80))) / 2.0, np.linspace(0.0, 1.0, 21))
+    points = np.concatenate([np.real(side(u.ravel(), v.ravel())) for side in blade.sides])
+    points = points + 2e-5 * draw.normal(size=points.shape)
+    off = draw.random(len(points)) < 0.03
+    points = points + off[:, None] * draw.uniform(-0.05, 0.05, points.shape) * np.ptp(points)
+    points = without_isolated_points(points)
+    found = ranked_channels(machine_coordinates(points, "annular"), even_subset(points, 1200), revolved=True)[0]
+    true = blade.exact.channel.real()
+    for edge in ("leading_edge", "trailing_edge"):
+        ends = true.line(edge).values(np.array([0.0, 1.0]))
+        away = np.sqrt(np.sum((found.channel.curves[edge][[0, -1]] - ends) ** 2, axis=-1))
+        assert np.max(away) < 0.1 * blade.chord

@@ -113,6 +113,13 @@ class FirstChannel:
         """Radius (m, k) [m], or 1 of a cascade, at u (k,) and v (m,)."""
         return self._radii(self.position(u, v[:, None]))
 
+    def largest_distance(self, boundary: Reals) -> float:
+        """Largest distance of points (n, 2) of a boundary from the channel's own."""
+        t, ends = np.linspace(0.0, 1.0, 101), np.repeat([0.0, 1.0], 101)
+        t = np.concatenate([t, t])
+        own = np.concatenate([self.position(t, ends), self.position(ends, t)])
+        return float(np.max(cKDTree(own).query(boundary)[0]))
+
     def least_jacobian(self) -> float:
         """The least Jacobian of the map, of its median; negative where it folds."""
         along, across = self.exact.slopes(np.linspace(-FOLD_MARGIN, 1.0 + FOLD_MARGIN, 41), np.linspace(0.0, 1.0, 21))
@@ -155,9 +162,6 @@ CHANNEL = INITIAL_BLADES[1].channel
 """control points of the channel's curves"""
 LAW_COUNT = 4
 """control points of their laws along the span (design/first_guesses.md)"""
-CLEARLY_NEARER = 0.8
-"""ratio of the distances of slices below which another division of the outline is taken instead of the likeliest: half
-of it leaves two of 69 corners more than 0.1 chords off, 0.8 one, 1 four (design/first_guesses.md)."""
 BORDER_SHARE, BORDER_POINTS, CORNER_MARGIN = 0.06, 24, 0.12
 """share of the points (and at least `BORDER_POINTS`) beside a piece of the outline that show whether the sides meet
 there; they keep clear of its ends by `CORNER_MARGIN` of it (design/first_guesses.md)."""
@@ -204,11 +208,12 @@ def ranked_channels(
 ) -> list[SlicedChannel]:
     """The channel and slices for each likely choice of walls and edges, the likeliest first.
 
-    All points show the outline, and which of its pieces are walls; `rows` of them the slices. The first choice stands
-    unless slices of another are clearly nearer to the points.
+    All points show the outline, and which of its pieces are walls; `rows` of them the slices. The likeliest leaves the
+    least product of the slices' distance from the points and the channel's from the outline (design/first_guesses.md).
     """
     found: list[tuple[float, SlicedChannel]] = []
-    for number, pieces in enumerate(corner_sets(alpha_boundary(machine[:, :2]))):
+    boundary = alpha_boundary(machine[:, :2])
+    for pieces in corner_sets(boundary):
         middles = [np.mean(piece, axis=0) for piece in pieces]
         for turn in pairings(machine, pieces, revolved=revolved):
             # the flow leads towards larger x, or where that hardly shows, away from the rounder edge
@@ -218,7 +223,7 @@ def ranked_channels(
             first, last = (float(np.mean(radii)) for radii in sliced.slices.radii)
             if abs(ahead[0]) < RADIAL_SHARE * float(length(ahead)) and last > ROUNDER_RATIO * first:
                 sliced = sliced_channel(machine[rows], _named(pieces, forward + 2), revolved=revolved)
-            found.append((sliced.mean_distance / (CLEARLY_NEARER if number else 1.0), sliced))
+            found.append((sliced.mean_distance * sliced.channel.largest_distance(boundary), sliced))
     return [sliced for _, sliced in sorted(found, key=lambda each: each[0])]
 
 
