@@ -53,6 +53,20 @@ def test_a_smooth_misfit_is_neither_noise_nor_outliers(dimension):
         assert found.noise == pytest.approx(NOISE, rel=0.15)
 
 
+def test_a_steady_slope_of_the_misfit_is_no_noise():
+    side, u, v, points, normals, heights = made(0, dimension=3)
+    found = scattered(side, u, v, points, normals, heights + 0.01 * u + 0.02 * v)
+    assert found.noise == pytest.approx(NOISE, rel=0.1)
+    assert found.correlation > 0.99
+
+
+def test_points_in_one_row_tell_their_noise():
+    side, u, _, points, normals, heights = made(0, dimension=3)
+    points[:, 2] = 0.5
+    found = scattered(side, u, np.full_like(u, 0.5), points, normals, heights + 0.01 * u)
+    assert found.noise == pytest.approx(NOISE, rel=0.1)
+
+
 @pytest.mark.parametrize(("misfit", "off"), [(0.0, 1e-3), (30.0 * NOISE, 4e-3)])
 def test_single_points_off_their_neighbours_are_outliers_whatever_the_misfit(misfit, off):
     # off by more than the usual distance, which the misfit makes large

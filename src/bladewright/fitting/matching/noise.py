@@ -286,14 +286,36 @@ def noise_of(
     kept = inliers & inliers[index].all(axis=1)
     kept = kept if np.any(kept) else np.ones(len(points), dtype=bool)
     others, height, own_weight = weights[index[kept]], heights[kept], weights[kept]
-    total = np.sum(others, axis=1)
+    if points.shape[1] == 2:
+        # two neighbours to each side of a curve cancel the slope of a misfit themselves
+        total = np.sum(others, axis=1)
+        expected, spread = np.sum(others * heights[index[kept]], axis=1) / total, 1.0 / total
+    else:
+        shares = _linear_shares(around.places[kept], around.places[index[kept]], footpoints.normals[kept])
+        expected, spread = np.sum(shares * heights[index[kept]], axis=1), np.sum(shares**2 / others, axis=1)
     # scaled to the variance of the noise
-    difference = (height - np.sum(others * heights[index[kept]], axis=1) / total) / np.sqrt(
-        1.0 / own_weight + 1.0 / total
-    )
+    difference = (height - expected) / np.sqrt(1.0 / own_weight + spread)
     variance, own = float(np.mean(own_weight * height**2)), float(np.mean(difference**2))
     correlation = float(np.clip(1.0 - own / variance, 0.0, 1.0)) if variance > 0.0 else 0.0
     return NoiseEstimate(noise=median_deviation(difference), inliers=inliers, correlation=correlation)
+
+
+FLAT = 1e-3
+"""extent of neighbours across their row, of that along it, below which only the slope along it is told"""
+
+
+def _linear_shares(places: Reals, beside: Reals, normals: Reals) -> Reals:
+    """Shares (n, k) of the heights of k neighbours in what a linear function through them has at each of n places.
+
+    The difference from it leaves the slope of a misfit out, which neighbours to one side do not cancel (Gasser, Sroka
+    and Jennen-Steinmetz 1986, pseudo-residuals).
+    """
+    offsets = (beside - places[:, None])[..., : normals.shape[1]]
+    offsets = offsets - np.sum(offsets * normals[:, None], axis=-1, keepdims=True) * normals[:, None]
+    size = np.sqrt(np.mean(offsets**2, axis=(1, 2), keepdims=True))
+    offsets = offsets / np.where(size > 0.0, size, 1.0)
+    rows = np.concatenate([np.ones((*offsets.shape[:2], 1)), offsets], axis=-1)
+    return np.asarray(np.linalg.pinv(rows, rcond=FLAT)[:, 0])
 
 
 def _noise_of_many(
