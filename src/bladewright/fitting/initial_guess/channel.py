@@ -113,12 +113,12 @@ class FirstChannel:
         """Radius (m, k) [m], or 1 of a cascade, at u (k,) and v (m,)."""
         return self._radii(self.position(u, v[:, None]))
 
-    def largest_distance(self, boundary: Reals) -> float:
-        """Largest distance of points (n, 2) of a boundary from the channel's own."""
+    def largest_distance(self, outline: Reals) -> float:
+        """Largest distance [m] of points (n, 2) of an outline from the channel's four curves."""
         t, ends = np.linspace(0.0, 1.0, 101), np.repeat([0.0, 1.0], 101)
         t = np.concatenate([t, t])
         own = np.concatenate([self.position(t, ends), self.position(ends, t)])
-        return float(np.max(cKDTree(own).query(boundary)[0]))
+        return float(np.max(cKDTree(own).query(outline)[0]))
 
     def least_jacobian(self) -> float:
         """The least Jacobian of the map, of its median; negative where it folds."""

@@ -301,14 +301,15 @@ def noise_of(
 
 
 FLAT = 1e-3
-"""extent of neighbours across their row, of that along it, below which only the slope along it is told"""
+"""extent of neighbours across their row, of that along it, below which only the slope along it is told: half and twice
+change the noise of four clouds by 0.1 % (design/matching.md)"""
 
 
 def _linear_shares(places: Reals, beside: Reals, normals: Reals) -> Reals:
-    """Shares (n, k) of the heights of k neighbours in what a linear function through them has at each of n places.
+    """Shares (n, k) of the heights of points (n, k, 4) in what a plane through them has at places (n, 4) [m].
 
-    The difference from it leaves the slope of a misfit out, which neighbours to one side do not cancel (Gasser, Sroka
-    and Jennen-Steinmetz 1986, pseudo-residuals).
+    The normals (n, 3) are those of the surface. The difference from a plane leaves the slope of a misfit out, which
+    neighbours to one side do not cancel (Gasser, Sroka and Jennen-Steinmetz 1986, pseudo-residuals).
     """
     offsets = (beside - places[:, None])[..., : normals.shape[1]]
     offsets = offsets - np.sum(offsets * normals[:, None], axis=-1, keepdims=True) * normals[:, None]
