@@ -278,17 +278,10 @@ def _matched(
     first = free.applied(start) if start is not None and isinstance(free, FreeParameters) else start
     matched = matched_section if task.dimension == 2 else matched_blade
     found, reason = matched(task, kind, first, like, header, target)
-    return found, _built(found), reason
-
-
-def _built(match: Match) -> Any:
-    """What a design of a family that is one part builds."""
     try:
-        return match.design.build()
+        return found, found.design.build(), reason
     except DesignError as error:
-        raise FitError(
-            f"the nearest design cannot be built ({error}); give a start design, or bounds that keep off it"
-        ) from error
+        return task.best_so_far.instead_of(found, error)
 
 
 def _weights(weights: ArrayLike | None, count: int) -> Reals:

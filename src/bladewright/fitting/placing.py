@@ -25,6 +25,7 @@ from bladewright.fitting.assessment.result import Motion
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.clouds.walls import Walls
 from bladewright.fitting.free_parameters import EDGES, WALLS, FreeParameters
+from bladewright.fitting.matching.noise import EXACT
 from bladewright.fitting.matching.search import Match, Task, about_x, has_systematic_misfit
 from bladewright.fitting.registration import (
     OTHER_BLADE_NOTE,
@@ -242,9 +243,11 @@ def _step_beside(found: Match) -> tuple[Motion | None, float]:
 def nearest_of(turns: list[PlacedTask], most: int) -> tuple[PlacedTask, Match, Any] | None:
     """The last task whose search has found a design, with `most` points to measure, the match, and what it builds."""
     for here in reversed(turns):
-        nearest = here.shown.best_so_far.built()
+        # nobody who interrupts waits for finer blades than searches build
+        nearest = here.shown.best_so_far.built(EXACT)
         if nearest is not None:
+            match, built = nearest
             rows = random_subset(len(here.every.points), most)
             hidden = None if here.hidden is None else here.hidden[rows]
-            return replace(here, every=here.every.part(rows), hidden=hidden), *nearest
+            return replace(here, every=here.every.part(rows), hidden=hidden), replace(match, interrupted=True), built
     return None

@@ -37,12 +37,12 @@ def matched_unified(
     check_bounds(first, task.free(first), task.bounds)
     try:
         found, reason = selected_match(task, first, target, like=wanted, guessed=start is None)
-        found, built = _buildable(task, found)
+        found, built, note = _buildable(task, found)
     except FitError as error:
         if header.blade_count is None and isinstance(guessed, UnifiedBlade) and guessed.blade_count == 1:
             raise FitError(f"{error}; the points go far around x: {AXES_HINT}") from error
         raise
-    return found, built, reason
+    return found, built, note or reason
 
 
 def _with_held_values(task: Task, guessed: Design, *, started: bool) -> Design:
@@ -67,9 +67,9 @@ def _free_as(match: Match, _: Design) -> tuple[str, ...]:
     return match.problem.paths
 
 
-def _buildable(task: Task, match: Match) -> tuple[Match, Any]:
-    """The match and what it builds; where that is refused, one that keeps further from what is refused."""
-    refusal = ""
+def _buildable(task: Task, match: Match) -> tuple[Match, Any, str]:
+    """The match and what it builds; where it is refused, one that keeps further from what is, or another and a note."""
+    refusal: DesignError | None = None
     for margin_factor in (0.0, 1.0, 30.0, 1000.0):
         if margin_factor:
             # what a match holds stays held
@@ -77,9 +77,8 @@ def _buildable(task: Task, match: Match) -> tuple[Match, Any]:
             with suppress(FitError):
                 match = searched(fresh, match.design, rounds=2, min_reduction=FINAL_REDUCTION)
         try:
-            return match, match.design.build()
+            return match, match.design.build(), ""
         except DesignError as error:
-            refusal = str(error)
-    raise FitError(
-        f"the nearest design cannot be built ({refusal}); give a start design, or other numbers of parameters"
-    )
+            refusal = error
+    assert refusal is not None  # noqa: S101 - no margin was kept
+    return task.best_so_far.instead_of(match, refusal)

@@ -6,14 +6,14 @@ search in exact data ends free of it. Knots, outliers and what lies at the ends 
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bladewright.designs import Design
-from bladewright.errors import BladewrightError, DesignError, FitError
+from bladewright.errors import DesignError, FitError
 from bladewright.fitting.clouds.thinning import random_subset
+from bladewright.fitting.matching.best_so_far import BestSoFar
 from bladewright.fitting.matching.blade_ends import BladeEnds, blade_ends_of, edge_overhang_of
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.noise import EXACT, NoiseEstimate, doubted_outliers, noise_of
@@ -22,38 +22,6 @@ from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.models.model import Model, model_of
 from bladewright.numerics.least_squares import FIRST_DAMPING, MIN_REDUCTION, constrained_minimum
 from bladewright.nurbs.basis import Reals
-
-KEPT_DESIGNS = 3
-"""designs that are kept for an interruption: the nearest may be one that cannot be built."""
-
-
-@dataclass(frozen=True, eq=False)
-class BestSoFar:
-    """The nearest designs so far, nearest first, for when a match is interrupted."""
-
-    found: list[tuple[float, Any]] = field(default_factory=list)
-
-    def note(self, found: Any) -> None:
-        """Keeps the end of a round if few noted designs are nearer."""
-        if np.isfinite(found.mean_distance):
-            self.found.append((found.mean_distance, found))
-            self.found.sort(key=lambda each: each[0])
-            del self.found[KEPT_DESIGNS:]
-
-    def built(self) -> tuple[Any, Any] | None:
-        """The match of the nearest design that can be built, and what it builds; None where there is none.
-
-        Blades are built no finer than searches build them: nobody who interrupts waits for more.
-        """
-        for _, found in self.found:
-            tolerance = getattr(found.design, "tolerance", None)
-            coarse = found.design.changed({} if tolerance is None else {"tolerance": max(tolerance, EXACT)})
-            try:
-                return replace(found, design=coarse, interrupted=True), coarse.build()
-            except BladewrightError:
-                continue
-        return None
-
 
 EVALUATIONS_PER_ROUND = 10
 """evaluations of the surface in a round; after it knots, outliers and noise are updated

@@ -1,0 +1,53 @@
+"""The nearest designs that searches have reached, for when a match is interrupted or cannot be built."""
+
+from dataclasses import dataclass, field, replace
+from itertools import chain
+from typing import Any
+
+import numpy as np
+
+from bladewright.errors import BladewrightError, FitError
+
+KEPT_DESIGNS = 3
+"""designs of as many parameters that are kept: the nearest may be one that cannot be built"""
+
+
+@dataclass(frozen=True, eq=False)
+class BestSoFar:
+    """The nearest matches of each number of parameters so far."""
+
+    found: dict[int, list[Any]] = field(default_factory=dict)
+
+    def note(self, found: Any) -> None:
+        """Keeps the end of a round if few of as many parameters are nearer."""
+        if np.isfinite(found.mean_distance):
+            alike = [*self.found.get(count := len(found.problem.paths), ()), found]
+            self.found[count] = sorted(alike, key=lambda each: each.mean_distance)[:KEPT_DESIGNS]
+
+    def built(
+        self, least_tolerance: float = 0.0, kind: type[Any] = object, most: float = np.inf
+    ) -> tuple[Any, Any] | None:
+        """The match of the nearest design that can be built, and what it builds; None where there is none.
+
+        Of a kind and of so many parameters at most; blades are built no finer than `least_tolerance`, of the chord.
+        """
+        few = (found for count, found in self.found.items() if count <= most)
+        for found in sorted(chain.from_iterable(few), key=lambda each: each.mean_distance):
+            tolerance = getattr(found.design, "tolerance", None)
+            design = found.design.changed({} if tolerance is None else {"tolerance": max(tolerance, least_tolerance)})
+            if not isinstance(design, kind):
+                continue
+            try:
+                return replace(found, design=design), design.build()
+            except BladewrightError:
+                continue
+        return None
+
+    def instead_of(self, refused: Any, error: Exception) -> tuple[Any, Any, str]:
+        """The same of the family of a match that cannot be built, with as many parameters at most, and a note."""
+        found = self.built(kind=type(refused.design), most=len(refused.problem.paths))
+        if found is None:
+            raise FitError(
+                f"the nearest design cannot be built ({error}); give a start design, or bounds that keep off it"
+            ) from error
+        return *found, f"the nearest design cannot be built ({error}), and the nearest that can is given"

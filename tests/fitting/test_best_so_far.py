@@ -1,0 +1,82 @@
+"""The nearest designs that searches have reached, where the very nearest cannot be built."""
+
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bladewright.errors import DesignError, FitError
+from bladewright.fitting.matching.best_so_far import BestSoFar
+from bladewright.section.unified import UnifiedSection
+
+SECTION = UnifiedSection(
+    name="turbine",
+    length_unit="mm",
+    axial_chord=40.0,
+    stagger=-40.0,
+    metal_angle_in=20.0,
+    metal_angle_out=-68.0,
+    tangent_in=0.5,
+    tangent_out=0.5,
+    leading_edge_radius=0.08,
+    trailing_edge_radius=0.015,
+    thickness_upper=(0.12, 0.2, 0.2, 0.1, 0.04),
+    thickness_lower=(0.08, 0.1, 0.08, 0.03),
+)
+REFUSED = SECTION.changed({"thickness_upper[0]": 0.001})
+"""whose edge needs more thickness than there is"""
+
+
+@dataclass(frozen=True)
+class Found:
+    """The end of a round, as far as it is noted."""
+
+    mean_distance: float
+    design: Any
+    count: int
+    problem: Any = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "problem", SimpleNamespace(paths=("path",) * self.count))
+
+
+@pytest.fixture
+def noted():
+    def noted(*found: Found) -> BestSoFar:
+        best = BestSoFar()
+        for each in found:
+            best.note(each)
+        return best
+
+    return noted
+
+
+def test_the_refused_section_is_refused() -> None:
+    with pytest.raises(DesignError):
+        REFUSED.build()
+
+
+def test_the_nearest_that_can_be_built_is_given_with_a_note(noted) -> None:
+    refused = Found(1e-6, REFUSED, 22)
+    nearer = Found(2e-6, SECTION.changed({"stagger": -41.0}), 20)
+    best = noted(Found(3e-6, SECTION, 18), nearer, refused, Found(1e-7, SECTION, 30))
+    match, built, note = best.instead_of(refused, DesignError("its edge has no room"))
+    assert match.design.stagger == -41.0
+    assert built.chord == pytest.approx(nearer.design.build().chord, rel=1e-12)
+    assert "cannot be built (its edge has no room)" in note
+
+
+def test_the_nearest_of_as_many_parameters_are_kept(noted) -> None:
+    refused = [Found(distance, REFUSED, 20) for distance in (2e-6, 1e-6)]
+    assert noted(*refused).built() is None
+    assert noted(*refused, Found(np.nan, SECTION, 9)).built() is None
+    assert noted(*refused, Found(3e-6, SECTION, 20)).built() is not None
+    assert noted(*refused, Found(3e-6, SECTION, 20), Found(2.5e-6, REFUSED, 20)).built() is None
+
+
+def test_where_none_can_be_built_the_cure_is_said(noted) -> None:
+    refused = Found(1e-6, REFUSED, 22)
+    with pytest.raises(FitError, match=r"cannot be built \(too thick\); give a start design"):
+        noted(refused).instead_of(refused, DesignError("too thick"))
