@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bladewright.files.clouds import read_cloud
-from bladewright.fitting.assessment.coverage import loose_ends
+from bladewright.fitting.assessment.coverage import largest_gap, loose_ends
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
@@ -63,3 +63,21 @@ def test_a_row_of_no_more_points_than_its_curve_has_parameters_shows_no_end(free
 def test_one_side_of_a_turning_vane_alone_does_not_pass():
     found = fit(read_cloud(LS89).points[:202])
     assert any("one side of a blade alone" in failure for failure in found.failures)
+
+
+@pytest.mark.parametrize(("parts", "count"), [(1, 20), (4, 60), (12, 60), (6, 600)])
+def test_the_largest_gap_is_that_of_95_in_100_clouds(parts, count):
+    outermost = np.max(np.random.default_rng(0).random((4000, parts, count // parts)), axis=2)
+    within = np.mean(np.max(1.0 - outermost, axis=1) <= largest_gap(count, parts))
+    assert within == pytest.approx(0.95, abs=3.0 * np.sqrt(0.95 * 0.05 / 4000))
+
+
+def test_an_end_whose_parameters_the_points_do_not_determine_is_no_better_known():
+    draw, sides = np.random.default_rng(0), STATOR.build().sides
+    points = np.concatenate([side(*draw.random((2, 200))) for side in sides])
+    freedom = free_parameters_of(("channel.leading_edge[*].r", "channel.trailing_edge[*].r"), None, started=True)
+    task = Task(points=points, weights=np.ones(len(points)), free=freedom, bounds={})
+    gaps = [
+        loose_ends(searched(each, STATOR, rounds=0)) for each in (task, task.holding(["channel.trailing_edge[1].r"]))
+    ]
+    assert gaps[1] == pytest.approx(gaps[0])

@@ -40,12 +40,9 @@ blades are milled."""
 GROSS_DEVIATION = (1.5e-3, 5e-3)
 """mean and largest deviation, of the chord, beyond which no match is trusted without a tolerance. A mean of 0.15 % on
 both sides of a turbine's throat of 0.3 chords changes it by 1 %; 0.5 % is half the radius of a usual leading edge.
-So well are sides between the edges to be known where nothing is asked, and edges, whose sharp tips move by more than
-their sides: bands of sides that are met are 1.7e-3 at most, of those that are off between their points 3.4e-3 at least
-(design/matching.md)."""
-KNOWN_END = 1e-3
-"""how near, of the chord, ends are to be known where nothing is asked: 0.1 mm of 100 mm. Ends that are met are known to
-6e-4, those that are off to 1.2e-3 (design/matching.md)."""
+So well are sides between the edges and ends to be known where nothing is asked, and edges, whose sharp tips move by
+more than their sides: bands of sides that are met are 1.7e-3 at most, of those that are off between their points 3.4e-3
+at least (design/matching.md)."""
 SHARED_VARIANCE = 0.5
 """share of the variance that neighbours have in common from which more of a deviation is the shape's than noise."""
 LARGEST_OUTLIER_SHARE = 0.1
@@ -180,7 +177,7 @@ def _not_shown(bands: ShapeBands, match: Match) -> list[str]:
             f"{100 * limits[worst] / chord:.2g} % of the chord are allowed: is it a whole blade? Give more points "
             "there, a start, a number of parameters or a tolerance"
         )
-    ends = max(KNOWN_END * chord, one_point)
+    ends = max(GROSS_DEVIATION[0] * chord, one_point)
     unknown = {name: gap for name, gap in loose_ends(match).items() if gap > ends}
     if unknown:
         found.append(
@@ -261,7 +258,7 @@ def _partly_shown(match: Match) -> list[str]:
 
 def _loose_ends_message(match: Match, ends: Mapping[str, float]) -> str:
     gaps = ", ".join(f"{with_unit(match.design, gap, 2)} at the {name}" for name, gap in ends.items())
-    return f"no row of points shows where the blade ends: it is known to about {gaps}"
+    return f"no row of points shows where the blade ends: it is known to {gaps} (95 %)"
 
 
 def notes_of(

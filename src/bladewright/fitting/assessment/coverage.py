@@ -43,7 +43,9 @@ measured (design/matching_constants.md)."""
 PLACES = {2: (41, 1), 3: (21, 11)}
 """places along each side, closer at the edges, and along the span at which it is asked how well the shape is known, by
 dimension; they bound the time"""
-NORMAL_95 = float(ndtri(0.975))
+CONFIDENCE = 0.95
+"""probability with which bands and ends are as near as is said [-]"""
+NORMAL_95 = float(ndtri((1.0 + CONFIDENCE) / 2.0))
 """standard deviations to either side within which 95 % of normal errors are [-]"""
 
 
@@ -63,12 +65,11 @@ class ShapeBands:
 
 
 def loose_ends(match: Match) -> dict[str, float]:
-    """The ends of a blade that no row of points shows, and how far past the outermost points they may be [m].
+    """The ends of a blade that no row of points shows, and how far past the outermost points they may be [m] (95 %).
 
     Empty for sections, and where the walls are held. The sides of a blade that goes on a little further are the same,
-    so that without a row only its outermost points tell where it ends. Of m values that are scattered evenly the
-    outermost is 1 / m of their width from the end on average, and each of the k free parameters of a wall has 1 / k of
-    the points beside it. Reference: David and Nagaraja 2003, section 2.5 (order statistics of even values).
+    so that without a row only its outermost points tell where it ends: to each free parameter of a wall, held ones that
+    the points do not determine among them, belongs its share of the points there.
     """
     if match.state.shape.exact is None:
         return {}
@@ -76,15 +77,24 @@ def loose_ends(match: Match) -> dict[str, float]:
     loose = {}
     for name in END_PARAMETERS:
         wall = walls.get(name)
-        free = parameters_of_curve(match.design, name) & {*match.problem.paths}
+        free = parameters_of_curve(match.design, name) & {*match.problem.paths, *match.held}
         if not free:
             continue
         # a curve with as many parameters as points meets any
         if wall is None or len(wall.places) <= len(free):
             loose[name] = chord
         elif wall.spread > max(EXACT * chord, ROW_SPREAD_OF_NOISE * match.noise_estimate.noise):
-            loose[name] = WIDTH_OVER_SPREAD * wall.spread * len(free) / len(wall.places)
+            loose[name] = WIDTH_OVER_SPREAD * wall.spread * largest_gap(len(wall.places), len(free))
     return loose
+
+
+def largest_gap(count: int, parts: int) -> float:
+    """The gap past the outermost of evenly scattered values, of their width, that 95 % of clouds have nowhere.
+
+    Each of several parts of a border has its share of the values; of m of them none lies beyond a gap g with the
+    probability (1 - g)^m. Reference: David and Nagaraja 2003, section 2.1 (distribution of the outermost value).
+    """
+    return float(1.0 - (1.0 - CONFIDENCE ** (1.0 / parts)) ** (parts / count))
 
 
 def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:

@@ -93,6 +93,8 @@ class Task:
     """(m, 2) points of hub and shroud beside the blade, in (x, r) or (x, z) [m]: they show where it ends"""
     turn: float = 0.0
     """angle about x by which the points are turned from where they are given [rad]"""
+    held: frozenset[str] = frozenset()
+    """parameters that are held as the points do not determine them"""
     best_so_far: BestSoFar = field(default_factory=BestSoFar)
     """the nearest designs that searches have reached"""
 
@@ -112,9 +114,9 @@ class Task:
         return replace(self, points=self.points @ about_x(angle).T, turn=self.turn + angle)
 
     def holding(self, held: Collection[str]) -> "Task":
-        """The same task with some parameters held."""
-        names = frozenset(held)
-        return replace(self, free=lambda design: tuple(path for path in self.free(design) if path not in names))
+        """The same task with some parameters held that the points do not determine."""
+        names = self.held | {*held}
+        return replace(self, held=names, free=lambda design: tuple(p for p in self.free(design) if p not in names))
 
     def part(self, rows: NDArray[np.intp]) -> "Task":
         """The same task with some of the points (m,)."""
@@ -140,6 +142,8 @@ class Match:
     interrupted: bool = False
     turn: float = 0.0
     """angle about x by which the task's points are turned [rad]"""
+    held: frozenset[str] = frozenset()
+    """parameters of the task that are held as the points do not determine them"""
 
     @property
     def model(self) -> Model:
@@ -332,6 +336,7 @@ def _prepared_round(
         ends=ends,
         damping=FIRST_DAMPING if before is None else before.damping,
         turn=task.turn,
+        held=task.held,
         evaluations=1 if before is None else before.evaluations + 1,
     )
 
