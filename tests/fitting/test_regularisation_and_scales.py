@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 import bladewright as bw
+from bladewright.designs import Point
 from bladewright.fitting.matching.residuals import (
     BEND_SPREAD,
     CAMBER_SPREAD,
+    CHANNEL_SPREAD,
     SPREAD_ABOUT_START,
     TANGENT_SPREAD,
     USUAL_TANGENT,
@@ -135,3 +137,19 @@ def test_bounds_that_make_no_sense_are_refused(bounds, words):
     with pytest.raises(bw.FitError, match=words) as caught:
         check_bounds(SECTION, PATHS, bounds)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("shape", "bent"), [((1.0, 1.0, 1.0, 1.0), 0.0), ((0.0, 1.0, 2.0, 3.0), 0.0), ((1, 0, 0, 0), 1.0)]
+)
+def test_an_edge_may_move_and_tilt_and_its_last_point_does_not_leave_the_others(shape, bent):
+    start = example("backswept-impeller")
+    edge = tuple(Point(51.0 - 3.0 * i, 100.0 + i**2) for i in range(4))
+    start = replace(start, trailing_edge=replace(start.trailing_edge, points=edge))
+    paths, size = tuple(f"trailing_edge.points[{i}].r" for i in range(4)), np.full(4, 2.0)
+    found = regularisation_of(start, paths, size)
+    change = np.array(shape) * BEND_SPREAD
+    rows = found.matrix @ change - found.rhs
+    # the edge itself is bent, and that costs nothing
+    np.testing.assert_allclose(found.rhs, 0.0, atol=1e-12)
+    assert np.sum(rows**2) == pytest.approx(np.sum((change / CHANNEL_SPREAD) ** 2) + bent, rel=1e-9)

@@ -5,6 +5,7 @@ parameters and have variance one. A search weighs them with the noise of the clo
 are exact.
 """
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain
@@ -39,6 +40,8 @@ percent of the chord. With 0.5 a corner of the radial turbine ends 9 % of the ch
 diffuser depends on it as well (design/matching_constants.md)."""
 MERIDIANS = ("channel.", "flow_path.", "leading_edge.", "trailing_edge.")
 """beginnings of the paths of those, and of the edge curves and walls of blades from sections."""
+POINT_PATH = re.compile(r"(.*)\[\d+\](\.[xr])")
+"""path of a coordinate of a point of such a curve"""
 BEND_SPREAD = 0.5
 """spread of the second differences of a law, in the scale of its parameters. Smaller values straighten laws that the
 cloud bends (design/matching_constants.md)."""
@@ -89,7 +92,8 @@ def regularisation_of(
     index = {path: i for i, path in enumerate(paths)}
     shared = float(np.sqrt(independent_share))
     tangents = _tangents(start, TANGENT_SPREAD * shared)
-    for terms, usual, width in chain(_second_differences(start), _thickness_differences(start), tangents):
+    bends = chain(_second_differences(start), _meridional_bends(start))
+    for terms, usual, width in chain(bends, _thickness_differences(start), tangents):
         free = [index[path] for path, _ in terms if path in index]
         if not free:
             continue
@@ -128,6 +132,21 @@ def _second_differences(start: Design) -> Iterator[Row]:
 def _second_differences_of(line: Sequence[str]) -> Iterator[Row]:
     for before, at, after in zip(line, line[1:], line[2:], strict=False):
         yield [(before, 1.0), (at, -2.0), (after, 1.0)], 0.0, BEND_SPREAD
+
+
+def _meridional_bends(start: Design) -> Iterator[Row]:
+    """Second differences of what the points of edges, walls and a channel's curves change by: these bend themselves.
+
+    Of an edge the points past hub and shroud are hardly shown by the cloud, and went off with every search.
+    """
+    values, lines = start.parameters(), dict[str, list[str]]()
+    for path in values:
+        found = POINT_PATH.fullmatch(path)
+        if found and path.startswith(MERIDIANS):
+            lines.setdefault(found[1] + found[2], []).append(path)
+    for line in lines.values():
+        for terms, _, width in _second_differences_of(line):
+            yield terms, sum(factor * values[path] for path, factor in terms), width
 
 
 def _thickness_differences(start: Design) -> Iterator[Row]:
