@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.polynomial.polynomial import polyfit, polyval
 from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 from scipy.spatial import cKDTree
@@ -230,7 +231,8 @@ def ranked_channels(
 def sliced_channel(machine: Reals, named: dict[str, Reals], *, revolved: bool) -> SlicedChannel:
     """The slices in the channel of one outline; their cambers begin and end at its edges.
 
-    Noses of staggered sections reach past the ends of their camber, so that the edges are moved to these once.
+    Noses of staggered sections reach past the ends of their camber, so that the edges are moved to these once, by what
+    changes evenly along the span.
     """
     channel = channel_through(named, CHANNEL, revolved=revolved)
     slices = _sliced(machine, channel).slices
@@ -263,9 +265,11 @@ def _sliced(machine: Reals, channel: FirstChannel) -> SlicedChannel:
 
 
 def _trimmed(channel: FirstChannel, slices: Slices) -> dict[str, Reals]:
-    """The four curves of a channel between the ends of the cambers."""
+    """The four curves of a channel between the ends of the cambers, as a straight line along the span has these."""
     ends = channel.u_at(slices.camber[:, [0, 3], 0] * channel.extents(slices.v)[0][:, None], slices.v)
-    first, last = np.clip(ends[:, 0], -MOST_TRIM, MOST_TRIM), np.clip(ends[:, 1], 1.0 - MOST_TRIM, 1.0 + MOST_TRIM)
+    # of single slices they are less well known than the outline
+    first, last = polyval(slices.v, polyfit(slices.v, ends, 1))
+    first, last = np.clip(first, -MOST_TRIM, MOST_TRIM), np.clip(last, 1.0 - MOST_TRIM, 1.0 + MOST_TRIM)
     pieces = {name: channel.position(u, slices.v) for name, u in (("leading_edge", first), ("trailing_edge", last))}
     for name, row in (("hub", 0), ("shroud", -1)):
         u = np.linspace(first[row], last[row], 41)
