@@ -112,6 +112,18 @@ def test_edges_of_another_kind_than_points_are_refused():
         ChannelCurves(blade=None).edge_like("leading_edge", None, 1e-3)
 
 
+def test_an_edge_whose_corner_has_slid_along_its_wall_runs_on_as_the_rest_of_it():
+    lines = {
+        "trailing_edge": lambda t: 1e-3 * np.stack([51.0 - 8.0 * t, 100.0 + 4.0 * np.exp(-t / 0.05)], axis=-1),
+        "hub": lambda t: 1e-3 * np.stack([51.0 + 0.0 * t, 55.0 + 49.0 * t], axis=-1),
+        "shroud": lambda t: 1e-3 * np.stack([43.0 + 0.0 * t, 55.0 + 45.0 * t], axis=-1),
+    }
+    channel = SimpleNamespace(line=lambda name: SimpleNamespace(values=lines[name]))
+    found = ChannelCurves(blade=SimpleNamespace(exact=SimpleNamespace(channel=channel))).edge("trailing_edge", 1e-3)
+    steps = np.diff(np.array(found.points), axis=0)
+    assert np.all(np.abs(steps[:, 1]) < np.abs(steps[:, 0]))
+
+
 def test_a_section_is_laid_out_by_lengths_on_a_cone():
     """On a cone r = r0 exp(k m'), so that m = (r - r0) / k."""
     radius, k = 0.3, 0.6

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.polynomial.polynomial import polyfit, polyval
 from scipy.spatial import cKDTree
 
 from bladewright.blade.design.flow_path import FlowPath
@@ -71,14 +72,12 @@ class ChannelCurves:
         return replace(path, matched="edges")
 
     def edge(self, name: str, metre: float) -> ThroughPoints:
-        """An edge as a curve through a few points that reaches past both walls, as far as these may be off, too."""
+        """An edge as a straight curve through a few points that reaches past both walls, as far as these may be off."""
         walls = max(float(cumulative_length(self.values(wall, CURVE_PLACES))[-1]) for wall in WALLS)
         own = float(cumulative_length(self.values(name, CURVE_PLACES))[-1])
         share = EDGE_OVERREACH + 2.0 * WALL_DISTANCE * walls / own
-        line = self._reaching_past_walls(name, share)
-        t = np.concatenate([[-share], CURVE_PLACES, [1.0 + share]])
-        at = np.linspace(t[0], t[-1], EDGE_POINTS)
-        return ThroughPoints(points=_points(np.stack([np.interp(at, t, axis) for axis in line.T], axis=-1), metre))
+        first, last = self._reaching_past_walls(name, share)
+        return ThroughPoints(points=_points(np.linspace(first, last, EDGE_POINTS), metre))
 
     def edge_like(self, name: str, curve: Any, metre: float) -> Meridian:
         """The edge with the points of another curve, in their places along the edge."""
@@ -103,9 +102,12 @@ class ChannelCurves:
         return replace(curve, **changes)
 
     def _reaching_past_walls(self, name: str, share: float) -> Reals:
-        """Points (n, 2) of an edge that is continued straight past both walls by a share of its length."""
-        line = self.values(name, CURVE_PLACES)
-        return _continued(line, np.full(2, share * cumulative_length(line)[-1]))
+        """The ends (2, 2) of the straight line nearest to an edge, past both walls by a share of its length.
+
+        A corner of a closed blade may have slid along its wall, and a line through it would meet that wall twice.
+        """
+        line = polyfit(CURVE_PLACES, self.values(name, CURVE_PLACES), 1)
+        return np.asarray(polyval(np.array([-share, 1.0 + share]), line).T)
 
 
 def _wall(line: Reals, shares: Reals) -> Reals:
