@@ -9,22 +9,9 @@ import pytest
 
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.matching.best_so_far import BestSoFar
-from bladewright.section.unified import UnifiedSection
+from machines import example
 
-SECTION = UnifiedSection(
-    name="turbine",
-    length_unit="mm",
-    axial_chord=40.0,
-    stagger=-40.0,
-    metal_angle_in=20.0,
-    metal_angle_out=-68.0,
-    tangent_in=0.5,
-    tangent_out=0.5,
-    leading_edge_radius=0.08,
-    trailing_edge_radius=0.015,
-    thickness_upper=(0.12, 0.2, 0.2, 0.1, 0.04),
-    thickness_lower=(0.08, 0.1, 0.08, 0.03),
-)
+SECTION = example("turbine-section")
 REFUSED = SECTION.changed({"thickness_upper[0]": 0.001})
 """whose edge needs more thickness than there is"""
 
@@ -62,10 +49,16 @@ def test_the_nearest_that_can_be_built_is_given_with_a_note(noted) -> None:
     refused = Found(1e-6, REFUSED, 22)
     nearer = Found(2e-6, SECTION.changed({"stagger": -41.0}), 20)
     best = noted(Found(3e-6, SECTION, 18), nearer, refused, Found(1e-7, SECTION, 30))
-    match, built, note = best.instead_of(refused, DesignError("its edge has no room"))
+    match, built, note = best.instead_of(refused, DesignError("its edge has no room"), structured=False)
     assert match.design.stagger == -41.0
     assert built.chord == pytest.approx(nearer.design.build().chord, rel=1e-12)
     assert "cannot be built (its edge has no room)" in note
+
+
+def test_a_given_structure_is_kept(noted) -> None:
+    refused = Found(1e-6, REFUSED, 22)
+    best = noted(refused, Found(2e-6, SECTION, 20), Found(3e-6, SECTION.changed({"stagger": -41.0}), 22))
+    assert best.instead_of(refused, DesignError("too thick"), structured=True)[0].design.stagger == -41.0
 
 
 def test_the_nearest_of_as_many_parameters_are_kept(noted) -> None:
@@ -79,4 +72,4 @@ def test_the_nearest_of_as_many_parameters_are_kept(noted) -> None:
 def test_where_none_can_be_built_the_cure_is_said(noted) -> None:
     refused = Found(1e-6, REFUSED, 22)
     with pytest.raises(FitError, match=r"cannot be built \(too thick\); give a start design"):
-        noted(refused).instead_of(refused, DesignError("too thick"))
+        noted(refused).instead_of(refused, DesignError("too thick"), structured=False)

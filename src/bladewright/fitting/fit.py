@@ -281,7 +281,7 @@ def _matched(
     try:
         return found, found.design.build(), reason
     except DesignError as error:
-        return task.best_so_far.instead_of(found, error)
+        return task.best_so_far.instead_of(found, error, structured=target.structured)
 
 
 def _weights(weights: ArrayLike | None, count: int) -> Reals:

@@ -40,7 +40,7 @@ blades are milled."""
 GROSS_DEVIATION = (1.5e-3, 5e-3)
 """mean and largest deviation, of the chord, beyond which no match is trusted without a tolerance. A mean of 0.15 % on
 both sides of a turbine's throat of 0.3 chords changes it by 1 %; 0.5 % is half the radius of a usual leading edge.
-So well are sides between the edges and ends to be known where nothing is asked, and edges, whose sharp tips move by
+So well are ends, and sides between the edges, to be known where nothing is asked, and edges, whose sharp tips move by
 more than their sides: bands of sides that are met are 1.7e-3 at most, of those that are off between their points 3.4e-3
 at least (design/matching.md)."""
 SHARED_VARIANCE = 0.5

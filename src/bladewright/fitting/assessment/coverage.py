@@ -89,9 +89,9 @@ def loose_ends(match: Match) -> dict[str, float]:
 
 
 def largest_gap(count: int, parts: int) -> float:
-    """The gap past the outermost of evenly scattered values, of their width, that 95 % of clouds have nowhere.
+    """The largest gap past the outermost of evenly scattered values, of their width [-], that 95 % of clouds keep.
 
-    Each of several parts of a border has its share of the values; of m of them none lies beyond a gap g with the
+    Each of so many parts of a border has its share of the count of values; of m of them none lies in a gap g with the
     probability (1 - g)^m. Reference: David and Nagaraja 2003, section 2.1 (distribution of the outermost value).
     """
     return float(1.0 - (1.0 - CONFIDENCE ** (1.0 / parts)) ** (parts / count))

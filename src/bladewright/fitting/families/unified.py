@@ -37,7 +37,7 @@ def matched_unified(
     check_bounds(first, task.free(first), task.bounds)
     try:
         found, reason = selected_match(task, first, target, like=wanted, guessed=start is None)
-        found, built, note = _buildable(task, found)
+        found, built, note = _buildable(task, found, structured=target.structured)
     except FitError as error:
         if header.blade_count is None and isinstance(guessed, UnifiedBlade) and guessed.blade_count == 1:
             raise FitError(f"{error}; the points go far around x: {AXES_HINT}") from error
@@ -67,7 +67,7 @@ def _free_as(match: Match, _: Design) -> tuple[str, ...]:
     return match.problem.paths
 
 
-def _buildable(task: Task, match: Match) -> tuple[Match, Any, str]:
+def _buildable(task: Task, match: Match, *, structured: bool) -> tuple[Match, Any, str]:
     """The match and what it builds; where it is refused, one that keeps further from what is, or another and a note."""
     refusal: DesignError | None = None
     for margin_factor in (0.0, 1.0, 30.0, 1000.0):
@@ -80,5 +80,5 @@ def _buildable(task: Task, match: Match) -> tuple[Match, Any, str]:
             return match, match.design.build(), ""
         except DesignError as error:
             refusal = error
-    assert refusal is not None  # noqa: S101 - no margin was kept
-    return task.best_so_far.instead_of(match, refusal)
+    assert refusal is not None  # noqa: S101 - every margin was refused
+    return task.best_so_far.instead_of(match, refusal, structured=structured)

@@ -1,5 +1,6 @@
 """The nearest designs that searches have reached, for when a match is interrupted or cannot be built."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from itertools import chain
 from typing import Any
@@ -25,27 +26,35 @@ class BestSoFar:
             self.found[count] = sorted(alike, key=lambda each: each.mean_distance)[:KEPT_DESIGNS]
 
     def built(
-        self, least_tolerance: float = 0.0, kind: type[Any] = object, most: float = np.inf
+        self, least_tolerance: float = 0.0, suits: Callable[[Any], bool] = lambda _: True
     ) -> tuple[Any, Any] | None:
-        """The match of the nearest design that can be built, and what it builds; None where there is none.
+        """The match of the nearest suitable design that can be built, and what it builds; None where there is none.
 
-        Of a kind and of so many parameters at most; blades are built no finer than `least_tolerance`, of the chord.
+        Blades are built no finer than `least_tolerance`, of the chord.
         """
-        few = (found for count, found in self.found.items() if count <= most)
-        for found in sorted(chain.from_iterable(few), key=lambda each: each.mean_distance):
+        suitable = filter(suits, chain.from_iterable(self.found.values()))
+        for found in sorted(suitable, key=lambda each: each.mean_distance):
             tolerance = getattr(found.design, "tolerance", None)
             design = found.design.changed({} if tolerance is None else {"tolerance": max(tolerance, least_tolerance)})
-            if not isinstance(design, kind):
-                continue
             try:
                 return replace(found, design=design), design.build()
             except BladewrightError:
                 continue
         return None
 
-    def instead_of(self, refused: Any, error: Exception) -> tuple[Any, Any, str]:
-        """The same of the family of a match that cannot be built, with as many parameters at most, and a note."""
-        found = self.built(kind=type(refused.design), most=len(refused.problem.paths))
+    def instead_of(self, refused: Any, error: Exception, *, structured: bool) -> tuple[Any, Any, str]:
+        """The same of the family of a match that cannot be built, and a note.
+
+        It has as many parameters at most, and the same where the structure is given. Raises FitError where there is
+        none.
+        """
+        paths = refused.problem.paths
+
+        def suits(found: Any) -> bool:
+            alike = found.problem.paths == paths if structured else len(found.problem.paths) <= len(paths)
+            return alike and isinstance(found.design, type(refused.design))
+
+        found = self.built(suits=suits)
         if found is None:
             raise FitError(
                 f"the nearest design cannot be built ({error}); give a start design, or bounds that keep off it"
