@@ -18,9 +18,17 @@ from bladewright.designs import Design
 from bladewright.errors import FitError
 from bladewright.fitting.matching.footpoints import Footpoints, Side
 from bladewright.frozen import FrozenMapping
+from bladewright.numerics.elementary import Array, cross2
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.collocation import collocation
 from bladewright.nurbs.surface import Surface
+
+FOLD_GRID = (21, 21)
+"""places along and across a channel at which it is checked for folding; a fold between them is refused by `build`;
+half and twice change nothing measured (design/matching_constants.md)"""
+SMALLEST_JACOBIAN = 0.02
+"""smallest Jacobian of a channel, of its median: one that comes nearer to folding over is held there;
+half and twice change nothing measured (design/matching_constants.md)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -108,6 +116,16 @@ def complex_steps(design: Design, paths: Sequence[str]) -> Mapping[str, Any]:
     values = design.parameters()
     kicks = 1j * STEP * np.eye(len(paths))
     return {path: values[path] + kick for path, kick in zip(paths, kicks, strict=True)}
+
+
+def fold_margins(own: tuple[Array, Array], moved: tuple[Array, Array]) -> Array:
+    """By how much a channel that has moved comes nearer to folding over than it may (..., c), of its median Jacobian.
+
+    Of both the derivatives (..., k, m, 2) of (x, r) along and across are given.
+    """
+    size = np.median(np.sqrt(np.prod([np.sum(np.real(each) ** 2, axis=-1) for each in own], axis=0)))
+    share = cross2(*moved) / size
+    return np.asarray(SMALLEST_JACOBIAN - share.reshape(*share.shape[:-2], -1))
 
 
 class SpatialModel(Model):

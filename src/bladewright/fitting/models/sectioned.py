@@ -8,13 +8,23 @@ import numpy as np
 
 from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.blade.exact.cut_sectioned import exact_blade_of_sections
+from bladewright.blade.exact.sectioned import ENDS
+from bladewright.blade.flow_path.stream_surfaces import KEPT
 from bladewright.blade.native.blade import side_surface
 from bladewright.blade.native.interpolation import edge_faces, native_sides
 from bladewright.blade.native.knots import Knots
 from bladewright.blade.native.refinement import mean_chord, refined_knots
 from bladewright.derivatives.complex_step import STEP, Nets
 from bladewright.fitting.models.blunt_edges import BluntEdges, closed_knots, closed_nets, closed_with
-from bladewright.fitting.models.model import Model, ModelShape, SpatialModel, complex_steps, model_of
+from bladewright.fitting.models.model import (
+    FOLD_GRID,
+    Model,
+    ModelShape,
+    SpatialModel,
+    complex_steps,
+    fold_margins,
+    model_of,
+)
 from bladewright.numerics.elementary import Array, radians
 from bladewright.nurbs.basis import Reals, greville
 from bladewright.nurbs.curve import Curve
@@ -66,7 +76,7 @@ class PlanarModel(Model):
 
     def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """Derivatives of the section's infeasibility."""
-        return infeasibility_rates(shape, paths, SINGLE_SECTION)
+        return infeasibility_rates(shape, paths, SINGLE_SECTION, len(shape.constraints))
 
     def _nets(self, design: Any) -> tuple[Array, Array]:
         """Control points (..., n, 2) of both sides where the section stands [m]."""
@@ -100,11 +110,11 @@ def _net(points: Array, edges: tuple[Edge, Edge], name: str, knots: Reals) -> Ar
     return interpolated_along_u(np.swapaxes(lines, -3, -2), rows[0], rows[1], knots)[..., 0, :]
 
 
-def infeasibility_rates(shape: ModelShape, paths: Sequence[str], span: Span) -> Reals:
-    """Derivatives (k, c) of the infeasibility of sections by every parameter."""
-    found = np.zeros((len(paths), len(shape.constraints)))
+def infeasibility_rates(shape: ModelShape, paths: Sequence[str], span: Span, count: int) -> Reals:
+    """Derivatives (k, count) of the infeasibility of sections by every parameter."""
+    found = np.zeros((len(paths), count))
     own = [i for i, path in enumerate(paths) if path.startswith("section.")]
-    if len(shape.constraints) and own:
+    if count and own:
         design = shape.design.changed(complex_steps(shape.design, [paths[i] for i in own]))
         found[own] = np.imag(infeasibility(design.section, span)) / STEP
     return found
@@ -133,7 +143,8 @@ class SectionedModel(SpatialModel):
         sides = [side_surface(net, self.knots, DEGREE) for net in native_sides(stations, self.knots)]
         faces = edge_faces(stations, sides[0], sides[1], self.knots) if any(self.blunt) else {}
         upper, lower = closed_with(sides[0], sides[1], faces)
-        constraints = np.real(infeasibility(design.section, FEASIBILITY_SPAN))
+        rows = infeasibility(design.section, FEASIBILITY_SPAN), _fold_margins(exact, exact)
+        constraints = np.concatenate([np.real(each) for each in rows])
         return ModelShape(design=design, sides=(upper, lower), exact=exact, constraints=constraints)
 
     def _closed(self, upper: Reals, lower: Reals) -> Nets:
@@ -144,8 +155,24 @@ class SectionedModel(SpatialModel):
         return np.moveaxis(rates[0], -2, 1), np.moveaxis(rates[1], -2, 1)
 
     def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
-        """Derivatives of the sections' infeasibility."""
-        return infeasibility_rates(shape, paths, FEASIBILITY_SPAN)
+        """Derivatives of the sections' infeasibility, and of how near the flow path is to folding over."""
+        folds = np.zeros((len(paths), FOLD_GRID[0] * FOLD_GRID[1]))
+        own = infeasibility_rates(shape, paths, FEASIBILITY_SPAN, len(shape.constraints) - folds.shape[1])
+        names = ("flow_path.", *(("leading_edge", "trailing_edge") if shape.design.flow_path.matched == "edges" else ()))
+        moving = [place for place, path in enumerate(paths) if path.startswith(names)]
+        if moving:
+            moved = shape.exact.moved_to(shape.design.changed(complex_steps(shape.design, [paths[i] for i in moving])))
+            folds[moving] = np.imag(_fold_margins(shape.exact, moved)) / STEP
+        return np.concatenate([own, folds], axis=1)
+
+
+def _fold_margins(exact: Any, moved: Any) -> Array:
+    """By how much the flow path of a blade that has moved comes nearer to folding over than it may (..., c)."""
+    own = exact.meridional_channel(ENDS, ENDS)
+    # paths that are matched at the edges end where they fold
+    low, high = own.extent if exact.design.flow_path.matched == "ends" else (-KEPT, 1.0 + KEPT)
+    t, v = np.linspace(low, high, FOLD_GRID[0]), np.linspace(0.0, 1.0, FOLD_GRID[1])
+    return fold_margins(own.grid(t, v)[1:], moved.meridional_channel(ENDS, ENDS).grid(t, v)[1:])
 
 
 @model_of.register

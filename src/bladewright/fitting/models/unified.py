@@ -13,8 +13,16 @@ from bladewright.blade.native.interpolation import native_sides
 from bladewright.blade.native.knots import DEGREE, Knots
 from bladewright.blade.native.refinement import mean_chord, refined_knots
 from bladewright.derivatives.complex_step import STEP, Nets, stepped_design, steps_of
-from bladewright.fitting.models.model import Model, ModelShape, SpatialModel, complex_steps, model_of
-from bladewright.numerics.elementary import Array, concatenated, cross2, length
+from bladewright.fitting.models.model import (
+    FOLD_GRID,
+    Model,
+    ModelShape,
+    SpatialModel,
+    complex_steps,
+    fold_margins,
+    model_of,
+)
+from bladewright.numerics.elementary import Array, concatenated, length
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber import camber_points
 from bladewright.section.checks import UNITS
@@ -24,16 +32,10 @@ from bladewright.section.unified_sides import sample_places, side_curve
 PLACES_ALONG_SPAN: Reals = np.linspace(0.0, 1.0, 65)
 """places along the span among which those are sought where an edge's radius is nearest to what the thickness holds:
 five for each joint of the longest law (`MOST_SPAN` control points)."""
-FOLD_GRID = (21, 21)
-"""places along and across the channel at which it is checked for folding; a fold between them is refused by `build`;
-half and twice change nothing measured (design/matching_constants.md)"""
 COARSE_SEARCH, KNOT_SLACK = 3.0, 100.0
 """tolerance of a search, of the design's own, from which knots may miss walls and edges by the factor `KNOT_SLACK` of
 what `build` promises. On Rotor 67 it saves half of the derivatives' time and changes distances by 1e-5 mm
 (design/matching.md)."""
-SMALLEST_JACOBIAN = 0.02
-"""smallest Jacobian of the channel, of its median: a channel that comes nearer to folding over is held there;
-half and twice change nothing measured (design/matching_constants.md)"""
 
 
 @final
@@ -146,10 +148,7 @@ def _fold_margins(exact: ExactUnifiedBlade, channel: TransfiniteChannel) -> Arra
     """By how much a channel (...) comes nearer to folding over than it may (..., c), of its median Jacobian."""
     u = np.linspace(-exact.before, 1.0 + exact.after, FOLD_GRID[0])
     v = np.linspace(0.0, 1.0, FOLD_GRID[1])
-    along, across = exact.channel.slopes(u, v)
-    size = np.median(np.sqrt(np.sum(np.real(along) ** 2, axis=-1) * np.sum(np.real(across) ** 2, axis=-1)))
-    share = cross2(*channel.slopes(u, v)) / size
-    return np.asarray(SMALLEST_JACOBIAN - share.reshape(*share.shape[:-2], -1))
+    return fold_margins(exact.channel.slopes(u, v), channel.slopes(u, v))
 
 
 def _outline(design: UnifiedSection) -> tuple[Array, Array, Array]:
