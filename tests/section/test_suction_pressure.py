@@ -271,7 +271,7 @@ def test_a_mirrored_design_is_the_mirror_image():
 )
 def test_what_does_not_fit_is_refused_with_the_parameter_that_cures_it(part, change, message):
     with pytest.raises(DesignError, match=message):
-        part.changed(change).outline(Span(np.array([0.0, 1.0])))
+        part.changed(change).outline(Span(np.array([0.0, 1.0]))).check_limits([" at span v = 0", " at span v = 1"])
 
 
 def test_built_sections_have_the_radius_and_angle_of_their_edges():

@@ -82,6 +82,8 @@ class ExactSectionedBlade(ExactBlade):
     surfaces: StreamSurfaces
     placement: Placement
     """what puts the sections on their stream lines: edge curves, or reference points"""
+    checked: bool = True
+    """whether sections that their family forbids are refused"""
 
     @cached_property
     def survey(self) -> FlowPathSections:
@@ -98,7 +100,10 @@ class ExactSectionedBlade(ExactBlade):
 
     def design_sections(self, v: Reals) -> FamilySections:
         """The design's sections at v (m,); raises DesignError where there are none, or they leave the flow path."""
-        return placed_sections(self.design, self.placement, self.mapping, v)
+        found = placed_sections(self.design, self.placement, self.mapping, v)
+        if self.checked:
+            found.outline.check_limits(_where(v))
+        return found
 
     @cached_property
     def rails(self) -> FamilySections:
@@ -244,13 +249,17 @@ def exact_sectioned_blade(design: "SectionedBlade", *, checked: bool = True) -> 
     except DesignError as error:
         raise DesignError(f"flow_path: {error}") from error
     exact = ExactSectionedBlade(
-        design=design, mapping=mapping, surfaces=surfaces, placement=_placement(design, surfaces)
+        design=design, mapping=mapping, surfaces=surfaces, placement=_placement(design, surfaces), checked=checked
     )
     if checked:
         v = {"sections": SURVEY, "ruled": ENDS, "developable": ENDS[:1]}[design.skinning]
-        check_outline(exact.design_sections(v).outline, [f" at v = {each:.3f}" for each in v])
+        check_outline(exact.design_sections(v).outline, _where(v))
         exact.survey.check()
     return exact
+
+
+def _where(v: Reals) -> list[str]:
+    return [f" at v = {each:.3f}" for each in v]
 
 
 def _placement(design: "SectionedBlade", surfaces: StreamSurfaces) -> Placement:

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from itertools import islice
+from itertools import groupby, islice
 from typing import Any
 
 import numpy as np
@@ -295,10 +295,12 @@ def _laws(parts: list[Any], counts: Mapping[str, int]) -> Any:
         return whole
     taken = dict.fromkeys(counts, 1)
     found = _part_with_shape(parts, taken) or _part_with_shape([parts[MIDDLE]] * len(START_SPANS), taken)
-    for path, count in counts.items():
-        wider = _part_with_shape(parts, taken | {path: count})
+    # those of one row along the chord together: their numbers of control points change together too
+    for _, row in groupby(counts, key=lambda path: path.partition("[")[0]):
+        more = taken | {path: counts[path] for path in row}
+        wider = _part_with_shape(parts, more)
         if wider is not None:
-            taken[path], found = count, wider
+            taken, found = more, wider
     return found
 
 
@@ -306,7 +308,9 @@ def _part_with_shape(parts: list[Any], counts: Mapping[str, int]) -> Any:
     """One part of laws of so many control points each, or None where it has sections without a shape."""
     try:
         part = part_along_span(parts, START_SPANS, counts)
-        part.outline(FEASIBILITY_SPANS).points(START_SPANS)
+        outline = part.outline(FEASIBILITY_SPANS)
+        outline.points(START_SPANS)
+        outline.check_limits([""] * len(FEASIBILITY_SPANS.v))
         infeasibility(part, FEASIBILITY_SPANS)
     except DesignError:
         return None

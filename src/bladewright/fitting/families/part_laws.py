@@ -324,8 +324,9 @@ def _reshaped(design: Any, structure: PartStructure) -> Any:
 
 def _has_shape(design: Any) -> bool:
     """Whether the sides leave the edges; with short tangents they turn back."""
+    span = Span(COMPARED_PLACES[::10])
     try:
-        design.section.outline(Span(COMPARED_PLACES[::10]))
+        design.section.outline(span).check_limits([""] * len(span.v))
     except DesignError:
         return False
     return True

@@ -8,7 +8,7 @@ import numpy as np
 
 from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.blade.exact.cut_sectioned import exact_blade_of_sections
-from bladewright.blade.exact.sectioned import ENDS
+from bladewright.blade.exact.sectioned import ENDS, PLACING
 from bladewright.blade.flow_path.stream_surfaces import KEPT
 from bladewright.blade.native.blade import side_surface
 from bladewright.blade.native.interpolation import edge_faces, native_sides
@@ -36,7 +36,7 @@ from bladewright.section.planar import PlanarSection
 from bladewright.section.segmented.outline import SegmentedOutline
 from bladewright.section.segmented.part import Segmented
 from bladewright.section.suction_pressure.edges import MAX_OPENING, opening
-from bladewright.section.suction_pressure.limits import CHECKED_AT
+from bladewright.section.suction_pressure.limits import CHECKED_AT, gaps
 from bladewright.section.suction_pressure.part import SuctionPressure, edge_points, sides
 
 SINGLE_SECTION = Span(np.zeros(1))
@@ -46,6 +46,8 @@ FEASIBILITY_SPAN = Span(np.linspace(0.0, 1.0, 5))
 SLOWEST_PACE = 0.003
 """smallest speed of a side's own parameter by s beside an edge, of its mean speed; at 0 the family refuses the side
 (design/matching_constants.md)"""
+SMALLEST_GAP = 1e-4
+"""smallest distance of the two sides from each other, in chords; at 0 the family refuses them"""
 OPENING_MARGIN = 0.003
 """smallest distance of an edge's opening from the largest one that the family allows
 (design/matching_constants.md)"""
@@ -158,7 +160,7 @@ class SectionedModel(SpatialModel):
         """Derivatives of the sections' infeasibility, and of how near the flow path is to folding over."""
         folds = np.zeros((len(paths), FOLD_GRID[0] * FOLD_GRID[1]))
         own = infeasibility_rates(shape, paths, FEASIBILITY_SPAN, len(shape.constraints) - folds.shape[1])
-        names = ("flow_path.", *(("leading_edge", "trailing_edge") if shape.design.flow_path.matched == "edges" else ()))
+        names = PLACING if shape.design.flow_path.matched == "edges" else PLACING[:1]
         moving = [place for place, path in enumerate(paths) if path.startswith(names)]
         if moving:
             moved = shape.exact.moved_to(shape.design.changed(complex_steps(shape.design, [paths[i] for i in moving])))
@@ -192,7 +194,9 @@ def infeasibility(part: Any, span: Span) -> Array:
         return np.zeros(0)
     edges = edge_points(part, span)
     rows = [_opening_excess(part, edge, span) for edge in ("leading_edge", "trailing_edge")]
-    for side in sides(part, span, *edges):
+    suction, pressure = sides(part, span, *edges)
+    rows.append(SMALLEST_GAP - (gaps(suction, pressure) if part.suction_side == "upper" else gaps(pressure, suction)))
+    for side in (suction, pressure):
         rows += [SLOWEST_PACE - side.own_parameter(end, CHECKED_AT, 1) for end in (0, 1)]
     shape = np.broadcast_shapes(*[each.shape[:-2] for each in rows])
     return np.concatenate([np.broadcast_to(each, (*shape, *each.shape[-2:])).reshape(*shape, -1) for each in rows], -1)

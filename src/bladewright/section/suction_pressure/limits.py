@@ -1,6 +1,6 @@
 """What a section by suction and pressure side refuses: parameters out of range, edges and sides that do not fit."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -104,7 +104,7 @@ def check_chord_left(leading: Corners, trailing: Corners, span: Span) -> None:
             )
 
 
-def check_reparametrisation(name: str, side: Side, span: Span) -> None:
+def check_reparametrisation(name: str, side: Side, where: Sequence[str]) -> None:
     """Refuse a control point on a tangent so near to its corner that the side cannot continue the edge's speed.
 
     With a the distance from the corner to that control point, c = a slope, which does not depend on a, and d the
@@ -125,25 +125,30 @@ def check_reparametrisation(name: str, side: Side, span: Span) -> None:
             )
             least = 1.2 * max(distance * slope_there / 2.5, ((distance * slope_there) ** 1.5 * next_step / 8.5) ** 0.4)
             raise DesignError(
-                f"{name}_tangent_{which} is {distance:.3g}{_where(at, span)}: too short for the {edge}_radius, the "
+                f"{name}_tangent_{which} is {distance:.3g}{where[at[-1]]}: too short for the {edge}_radius, the "
                 f"{name} side would turn back where it joins the edge; make it about {least:.2g} or more, or lower "
                 f"{edge}_radius"
             )
 
 
-def check_crossing(upper: Side, lower: Side, span: Span, *, suction_side: str, by_thickness: bool) -> None:
+def gaps(upper: Side, lower: Side) -> Array:
+    """How far the upper side stands on the left of the lower one (..., 64), in chords, between places along them."""
+    one, other = (side.points(CHECKED_AT) for side in (upper, lower))
+    across, along = one - other, np.diff(0.5 * (one + other), axis=-2)
+    return np.asarray(cross2(along, 0.5 * (across[..., 1:, :] + across[..., :-1, :])) / length(along))
+
+
+def check_crossing(upper: Side, lower: Side, where: Sequence[str], *, suction_side: str, by_thickness: bool) -> None:
     """Refuse sides of which the upper is not on the left of the lower; the keywords are for the message."""
-    one, other = (np.real(side.points(CHECKED_AT)) for side in (upper, lower))
-    across, middle = one - other, 0.5 * (one + other)
-    parted = cross2(np.diff(middle, axis=-2), 0.5 * (across[..., 1:, :] + across[..., :-1, :]))
+    parted = np.real(gaps(upper, lower))
     if np.any(parted <= 0.0):
         at = _worst(np.max(-parted, axis=-1))
         place = float(CHECKED_AT[int(np.argmin(parted[at]))])
         pressure = "pressure_thickness" if by_thickness else "pressure_heights"
-        gap = "raise pressure_thickness" if by_thickness else f"part suction_heights and {pressure}"
+        cure = "raise pressure_thickness" if by_thickness else f"part suction_heights and {pressure}"
         raise DesignError(
-            f"suction_heights and {pressure}: the two sides cross{_where(at, span)} near {place:.2f} of the way from "
-            f"leading to trailing edge (suction_side is the {suction_side} one); {gap} there, or lower an edge "
+            f"suction_heights and {pressure}: the two sides cross{where[at[-1]]} near {place:.2f} of the way from "
+            f"leading to trailing edge (suction_side is the {suction_side} one); {cure} there, or lower an edge "
             "radius or a tangent that reaches too far"
         )
 

@@ -1,5 +1,6 @@
 """The outline of a section by suction and pressure side: edges and sides in fixed parts of s."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -15,6 +16,7 @@ from bladewright.nurbs.domain import reversed as backwards
 from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline, by_parts
 from bladewright.section.power_series import polynomial_points
 from bladewright.section.suction_pressure.edges import Bends, Continuity, Corners, edge_camber, edge_polynomial
+from bladewright.section.suction_pressure.limits import check_crossing, check_reparametrisation
 from bladewright.section.suction_pressure.side import DEGREE, Side
 
 EDGE = 0.1
@@ -33,6 +35,10 @@ class SuctionPressureOutline(Outline):
     upper: Side
     lower: Side
     continuity: Continuity
+    suction_side: str
+    """upper or lower"""
+    by_thickness: bool
+    """whether the pressure side is given by thicknesses"""
 
     @cached_property
     def edges(self) -> tuple[Array, Array]:
@@ -62,6 +68,12 @@ class SuctionPressureOutline(Outline):
         smooth = 1 if self.continuity == "C1" else 2
         inner = [Joint(float(EDGE + w * (1.0 - 2.0 * EDGE)), DEGREE - 1) for w in knots]
         return (Joint(EDGE, smooth), *inner, Joint(1.0 - EDGE, smooth))
+
+    def check_limits(self, where: Sequence[str]) -> None:
+        names = ("suction", "pressure") if self.suction_side == "upper" else ("pressure", "suction")
+        for name, side in zip(names, (self.upper, self.lower), strict=True):
+            check_reparametrisation(name, side, where)
+        check_crossing(self.upper, self.lower, where, suction_side=self.suction_side, by_thickness=self.by_thickness)
 
     def points(self, s: Reals) -> tuple[Array, Array]:
         """Points (..., len(s), 2) of both sides."""

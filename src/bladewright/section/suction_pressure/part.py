@@ -29,9 +29,7 @@ from bladewright.section.suction_pressure.limits import (
     WEDGE,
     check,
     check_chord_left,
-    check_crossing,
     check_opening,
-    check_reparametrisation,
 )
 from bladewright.section.suction_pressure.outline import SHARE, SuctionPressureOutline
 from bladewright.section.suction_pressure.side import (
@@ -157,18 +155,20 @@ class SuctionPressureSection(PlanarSection):
 def assembled(part: SuctionPressure, span: Span) -> SuctionPressureOutline:
     """The outline of sections (..., m): characteristic points, suction side, pressure side, edges.
 
-    Raises DesignError where edges or sides do not fit.
+    Raises DesignError where edges do not fit.
     """
     leading, trailing = edge_points(part, span)
     check_chord_left(leading, trailing, span)
     suction, pressure = sides(part, span, leading, trailing)
     upper, lower = (suction, pressure) if part.suction_side == "upper" else (pressure, suction)
-    names = ("suction", "pressure") if part.suction_side == "upper" else ("pressure", "suction")
-    for name, side in zip(names, (upper, lower), strict=True):
-        check_reparametrisation(name, side, span)
-    by_thickness = bool(part.pressure_thickness)
-    check_crossing(upper, lower, span, suction_side=part.suction_side, by_thickness=by_thickness)
-    return SuctionPressureOutline(corners=(leading, trailing), upper=upper, lower=lower, continuity=part.edges)
+    return SuctionPressureOutline(
+        corners=(leading, trailing),
+        upper=upper,
+        lower=lower,
+        continuity=part.edges,
+        suction_side=part.suction_side,
+        by_thickness=bool(part.pressure_thickness),
+    )
 
 
 def camber_angles(part: SuctionPressure, span: Span) -> tuple[Array, Array]:
