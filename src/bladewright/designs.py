@@ -173,24 +173,29 @@ class Design(Part, ABC):
         """
 
 
-def unit_of(design: Part, name: str) -> str | None:
-    """The unit of a field, such as 'deg', or None where the field is no parameter."""
-    return next((f.metadata.get("unit") for f in fields(design) if f.name == name), None)
-
-
 def unit_at(design: Part, path: str) -> str | None:
     """The unit of the field that holds a parameter, such as 'deg', or None where the path leads to none."""
+    return _field_at(design, path).get("unit")
+
+
+def limits_at(design: Part, path: str) -> Limits | None:
+    """The limits of the field that holds a parameter, or None where it has none."""
+    return _field_at(design, path).get("limits")
+
+
+def _field_at(design: Part, path: str) -> Mapping[str, Any]:
+    """What is known of the field that holds a parameter; nothing where the path leads to none."""
     node: Any = design
-    unit: str | None = None
+    found: Mapping[str, Any] = {}
     for step in _steps(path):
         if isinstance(node, Part) and isinstance(step, str):
-            own = unit_of(node, step)
-            unit, node = unit if own == OF_LAW else own, getattr(node, step, None)
+            own: Mapping[str, Any] = next((f.metadata for f in fields(node) if f.name == step), {})
+            found, node = found if own.get("unit") == OF_LAW else own, getattr(node, step, None)
         elif isinstance(node, tuple) and isinstance(step, int) and -len(node) <= step < len(node):
             node = node[step]
         else:
             break
-    return unit
+    return found
 
 
 def value_at(design: Part, path: str) -> Any:

@@ -347,7 +347,7 @@ def _along_span(kind: FitFamily, shapes: Sequence[SectionShape], middle: Match) 
     def changed(path: str, value: float, first: float, there: float) -> float:
         unit = unit_at(part, path)
         by_ratio = unit != "deg" and min(value, first, there) > 0.0
-        allowed = part_range(path, unit, value, abs(value))
+        allowed = part_range(part, path, value, abs(value))
         found = value * there / first if by_ratio else value + there - first
         return float(np.clip(found, min(value, allowed.low), max(value, allowed.high)))
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bladewright.derivatives.patterns import matching
-from bladewright.designs import Design, unit_at
+from bladewright.designs import Design, Part, limits_at, unit_at
 from bladewright.errors import DesignError, FitError
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
@@ -34,59 +34,66 @@ class ParameterRange(NamedTuple):
 WEDGE_RANGE, ANGLE_RANGE = ParameterRange(3.0, 0.0, LARGEST_ANGLE), ParameterRange(5.0, -LARGEST_ANGLE, LARGEST_ANGLE)
 """of a wedge angle [deg]"""
 """of any other angle [deg]"""
-RANGE_BY_NAME = {
-    "maximum_thickness_at": ParameterRange(0.1, 0.051, 0.949),
-    "camber_position": ParameterRange(0.1, 0.021, 0.979),
-    "uniform_load": ParameterRange(0.1, 0.0, 1.0),
-    "transition": ParameterRange(0.1, 0.101, 0.899),
-    "leading_edge_index": ParameterRange(1.0, 0.05, 11.99),
-    "leading_edge_curvature": ParameterRange(0.02, 1e-4),
-    "trailing_edge_curvature": ParameterRange(0.02, 0.0),
-    "trailing_edge_slope": ParameterRange(0.1, -np.inf, -1e-4),
-    "trailing_edge_slope_factor": ParameterRange(0.3, 1e-3),
-    "camber": ParameterRange(0.02, -0.29, 0.29),
-    "lift_coefficient": ParameterRange(0.3, -2.99, 2.99),
-    "design_lift": ParameterRange(0.3, -1.99, 1.99),
-    "front_camber": ParameterRange(0.1),
-    "abscissas": ParameterRange(0.01),
-    "ordinates": ParameterRange(0.01),
-    "thickness_multiplier": ParameterRange(0.1),
-    "suction_heights": ParameterRange(0.02),
-    "pressure_heights": ParameterRange(0.02),
-    "suction_places": ParameterRange(0.05, -0.49, 1.49),
-    "pressure_places": ParameterRange(0.05, -0.49, 1.49),
+SIZE_BY_NAME = {
+    "maximum_thickness_at": 0.1,
+    "camber_position": 0.1,
+    "uniform_load": 0.1,
+    "transition": 0.1,
+    "leading_edge_curvature": 0.02,
+    "trailing_edge_curvature": 0.02,
+    "trailing_edge_slope": 0.1,
+    "trailing_edge_slope_factor": 0.3,
+    "camber": 0.02,
+    "lift_coefficient": 0.3,
+    "design_lift": 0.3,
+    "front_camber": 0.1,
+    "abscissas": 0.01,
+    "ordinates": 0.01,
+    "thickness_multiplier": 0.1,
+    "suction_heights": 0.02,
+    "pressure_heights": 0.02,
+    "suction_places": 0.05,
+    "pressure_places": 0.05,
 }
-"""Of fields whose limits the family states: a little inside them, so that a search may differentiate at its bounds."""
+"""of fields whose size the values do not tell, a change that matters"""
+INSIDE = 1e-3
+"""how far inside its field's limits a parameter stays, of its size: a search may differentiate at its bounds"""
 
 
 RangeRule = Callable[[float, float], ParameterRange]
 """from a parameter's value and the largest magnitude in its field"""
 RANGE_BY_ENDING: tuple[tuple[str, RangeRule], ...] = (
-    ("radius", lambda _, largest: ParameterRange(max(0.5 * largest, 1e-3), SMALLEST_LENGTH, 0.499)),
-    ("half_thickness", lambda _, largest: ParameterRange(max(0.5 * largest, 0.01), SMALLEST_LENGTH, 0.399)),
-    ("thickness", lambda _, largest: ParameterRange(max(0.5 * largest, 0.01), SMALLEST_LENGTH, 0.99)),
-    ("stretch", lambda *_: ParameterRange(0.3, 0.05, 19.9)),
-    ("scale", lambda *_: ParameterRange(0.3, 0.05, 19.9)),
+    ("radius", lambda _, largest: ParameterRange(max(0.5 * largest, 1e-3), SMALLEST_LENGTH)),
+    ("half_thickness", lambda _, largest: ParameterRange(max(0.5 * largest, 0.01), SMALLEST_LENGTH)),
+    ("thickness", lambda _, largest: ParameterRange(max(0.5 * largest, 0.01), SMALLEST_LENGTH)),
+    ("stretch", lambda *_: ParameterRange(0.3, 0.05)),
+    ("scale", lambda *_: ParameterRange(0.3, 0.05)),
+    ("index", lambda *_: ParameterRange(1.0, 0.05)),
     ("skew", lambda *_: ParameterRange(0.2, -0.95, 0.95)),
-    ("ratio", lambda *_: ParameterRange(0.5, 0.05, 99.0)),
+    ("ratio", lambda *_: ParameterRange(0.5, 0.05)),
     ("places", lambda *_: ParameterRange(0.05, 1e-3, 1.0 - 1e-3)),
     ("weights", lambda value, _: ParameterRange(0.5 * value, 1e-2 * value, 1e2 * value)),
-    ("tangent_in", lambda value, _: ParameterRange(float(np.clip(0.5 * value, 2e-3, 0.05)), 1e-3, 9.9)),
-    ("tangent_out", lambda value, _: ParameterRange(float(np.clip(0.5 * value, 2e-3, 0.05)), 1e-3, 9.9)),
+    ("tangent_in", lambda value, _: ParameterRange(float(np.clip(0.5 * value, 2e-3, 0.05)), 1e-3)),
+    ("tangent_out", lambda value, _: ParameterRange(float(np.clip(0.5 * value, 2e-3, 0.05)), 1e-3)),
     ("", lambda _, largest: ParameterRange(max(0.3 * largest, 0.02))),
 )
 """of other fields of a part by the end of their name; the first ending that matches counts"""
 
 
-def part_range(path: str, unit: str | None, value: float, largest: float) -> ParameterRange:
+def part_range(part: Part, path: str, value: float, largest: float) -> ParameterRange:
     """The range of a part's parameter at a path; `largest` is the largest magnitude in its field."""
     name = re.findall(r"[a-z_]\w*", re.sub(r"\.values\[\d+\]$", "", path))[-1]
-    if name in RANGE_BY_NAME:
-        return RANGE_BY_NAME[name]
-    if unit == "deg":
-        return WEDGE_RANGE if "wedge" in name else ANGLE_RANGE
-    rule = next(rule for ending, rule in RANGE_BY_ENDING if name.endswith(ending))
-    return rule(value, largest)
+    if name in SIZE_BY_NAME:
+        found = ParameterRange(SIZE_BY_NAME[name])
+    elif unit_at(part, path) == "deg":
+        found = WEDGE_RANGE if "wedge" in name else ANGLE_RANGE
+    else:
+        found = next(rule for ending, rule in RANGE_BY_ENDING if name.endswith(ending))(value, largest)
+    limits = limits_at(part, path)
+    if limits is None:
+        return found
+    inside = 0.0 if limits.closed else INSIDE * found.size
+    return ParameterRange(found.size, max(found.low, limits.low + inside), min(found.high, limits.high - inside))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -148,7 +155,7 @@ def _ranges(design: Design, paths: Sequence[str], chord: float) -> list[Paramete
     size = {name: max(among) for name, among in fields.items()}
     extent = {name: float(np.sqrt(max(value**2 for value in among))) for name, among in fields.items()}
     return [
-        part_range(path, unit_at(design, path), values[path], extent[_field(path)])
+        part_range(design, path, values[path], extent[_field(path)])
         if path.startswith("section.")
         else _range(design, path, values[path], size[_field(path)], chord)
         for path in paths
