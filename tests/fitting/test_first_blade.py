@@ -35,14 +35,14 @@ def _share(design: UnifiedBlade, points: np.ndarray) -> float:
 
 def test_a_first_blade_lies_within_one_percent_of_the_chord() -> None:
     points = _cloud(_truth("centrifugal-impeller"), 600)
-    assert _share(first_blade(points, arrangement="annular"), points) < 0.01
+    assert _share(first_blade(points, arrangement="annular")[0], points) < 0.01
 
 
 @pytest.mark.parametrize("end", [0, -1])
 @pytest.mark.parametrize("edge", ["leading_edge", "trailing_edge"])
 def test_a_first_blade_has_its_corners_within_one_percent_of_the_chord(edge: str, end: int) -> None:
     truth = _truth("radial-turbine")
-    found = first_blade(_cloud(truth, 1000), arrangement="annular")
+    found, _ = first_blade(_cloud(truth, 1000), arrangement="annular")
     there, here = (np.array(getattr(design.channel, edge)[end]) for design in (truth.design, found))
     assert np.sqrt(np.sum((there - here) ** 2)) < 0.01 * truth.chord * 1e3
 
@@ -50,7 +50,7 @@ def test_a_first_blade_has_its_corners_within_one_percent_of_the_chord(edge: str
 @pytest.mark.parametrize("name", ["metal_angle_in", "metal_angle_out"])
 def test_the_search_of_a_first_blade_leaves_the_metal_angles_of_its_slices(name: str) -> None:
     truth, span = _truth("propeller"), Span(np.linspace(0.0, 1.0, 6))
-    found = first_blade(_cloud(truth, 1000), arrangement="annular")
+    found, _ = first_blade(_cloud(truth, 1000), arrangement="annular")
     there, here = (np.real(span.values(getattr(design, name))) for design in (truth.design, found))
     assert np.max(np.abs(there - here)) < 20.0
 
@@ -70,7 +70,7 @@ def test_a_first_blade_is_found_from_part_of_the_span_on_the_other_side_of_the_m
     truth = _truth("compressor-stator")
     x, y, z = _cloud(truth, 700, 0.3, 0.8).T
     points = np.stack([x, -y, -z], axis=-1)
-    assert _share(first_blade(points, arrangement="annular"), points) < 0.01
+    assert _share(first_blade(points, arrangement="annular")[0], points) < 0.01
 
 
 @pytest.mark.parametrize("name", ["compressor-stator", pytest.param("mixed-flow-pump", marks=pytest.mark.slow)])
@@ -80,13 +80,13 @@ def test_noise_and_outliers_leave_a_first_blade_close(name: str) -> None:
     draw = np.random.default_rng(2)
     points = clean + 5e-4 * truth.chord * draw.normal(size=clean.shape)
     points[::20] += 0.1 * truth.chord * draw.normal(size=points[::20].shape)
-    assert _share(first_blade(points, arrangement="annular"), clean) < 0.015
+    assert _share(first_blade(points, arrangement="annular")[0], clean) < 0.015
 
 
 def test_a_first_blade_has_the_structure_that_was_asked_for() -> None:
     truth = _truth("compressor-stator")
     asked = structure_of(truth.design)
-    found = first_blade(_cloud(truth, 600), arrangement="annular", structure=asked, blade_count=20, length_unit="m")
+    found, _ = first_blade(_cloud(truth, 600), arrangement="annular", structure=asked, blade_count=20, length_unit="m")
     assert structure_of(found) == asked
     assert (found.blade_count, found.length_unit) == (20, "m")
 

@@ -130,8 +130,10 @@ def _shapes_of(part: Any) -> list[SectionShape]:
 def _closed_blades(task: Task, header: DesignHeader, like: Any) -> Iterator[Blade]:
     """Closed blades of the unified family that a task's points show: one that is searched, and one less near."""
     points, row = task.thinned(THOROUGH_POINTS).points, header.row(like)
-    first = first_blade(points, structure=INITIAL_BLADES[-1], name=header.name, length_unit=header.length_unit, **row)
-    few = replace(task.thinned(QUICK_POINTS), free=FreeParameters(), bounds={})
+    first, outline = first_blade(
+        points, structure=INITIAL_BLADES[-1], name=header.name, length_unit=header.length_unit, **row
+    )
+    few = replace(task.thinned(QUICK_POINTS), free=FreeParameters(), bounds={}, walls=task.walls or outline)
     found: Any = searched(few, first, noise=GUESS_NOISE, rounds=QUICK_ROUNDS).design
     radii = {path: value for path, value in found.parameters().items() if path.startswith(RADII)}
     smaller = (found.changed({path: share * value for path, value in radii.items()}) for share in SMALLER_RADII)

@@ -31,8 +31,14 @@ def matched_unified(
     task.progress("first design")
     if start is not None:
         guessed = start if wanted is None else reshaped(start, wanted)
+    elif task.dimension == 2:
+        guessed = _first_section(task, wanted, header)
     else:
-        guessed = _first_design(task, INITIAL_BLADES[-1] if task.dimension == 3 else wanted, like, header)
+        points, row = task.thinned(THOROUGH_POINTS).points, header.row(like)
+        guessed, outline = first_blade(
+            points, structure=INITIAL_BLADES[-1], name=header.name, length_unit=header.length_unit, **row
+        )
+        task = replace(task, outline=outline)
     first = _with_held_values(task, guessed, started=start is not None)
     check_bounds(first, task.free(first), task.bounds)
     try:
@@ -51,16 +57,13 @@ def _with_held_values(task: Task, guessed: Design, *, started: bool) -> Design:
     return first if started or first is guessed else with_feasible_edges(first)
 
 
-def _first_design(task: Task, structure: Structure | None, like: Design | None, header: DesignHeader) -> Design:
-    """The first design from the points alone; what `like` says of the row counts where nothing else does."""
-    some = task.thinned(THOROUGH_POINTS).points
-    if task.dimension == 2:
-        lengths: dict[str, Any] = {}
-        if structure is not None:
-            lengths = {name: getattr(structure, name) for name in ("chordwise", "samples", "clustering")}
-        return first_section(some, name=header.name, length_unit=header.length_unit, **lengths)
-    row = header.row(like)
-    return first_blade(some, structure=structure, name=header.name, length_unit=header.length_unit, **row)
+def _first_section(task: Task, structure: Structure | None, header: DesignHeader) -> Design:
+    """The first section from the points alone."""
+    lengths: dict[str, Any] = {}
+    if structure is not None:
+        lengths = {name: getattr(structure, name) for name in ("chordwise", "samples", "clustering")}
+    points = task.thinned(THOROUGH_POINTS).points
+    return first_section(points, name=header.name, length_unit=header.length_unit, **lengths)
 
 
 def _free_as(match: Match, _: Design) -> tuple[str, ...]:

@@ -5,6 +5,7 @@ stream surfaces give camber and thickness, whose laws make a blade with few cont
 blade then brings it to the points.
 """
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -43,8 +44,8 @@ def first_blade(
     pitch: float | None = None,
     name: str = "blade",
     length_unit: LengthUnit = "mm",
-) -> UnifiedBlade:
-    """A blade of the unified family near points (n, 3) [m] in the machine's axes, found from them alone.
+) -> tuple[UnifiedBlade, tuple[Reals, ...]]:
+    """A blade of the unified family near points (n, 3) [m] in the machine's axes, and hub and shroud on their outline.
 
     `pitch` [m] of a linear cascade. Where blade_count or pitch is not given, one is taken at which neighbours stand
     apart. Raises FitError where no blade that can be built lies near the points.
@@ -62,11 +63,13 @@ def first_blade(
     refusal: BladewrightError | None = None
     for sliced in channels:
         try:
-            found = searched(task, with_feasible_edges(_blade_of(sliced, header)), noise=NOISE, rounds=ROUNDS)
+            outlined = replace(task, outline=sliced.walls)
+            found = searched(outlined, with_feasible_edges(_blade_of(sliced, header)), noise=NOISE, rounds=ROUNDS)
         except BladewrightError as error:
             refusal = refusal or error
             continue
-        return widened_where_feasible(found.design, structure or FEW)  # type: ignore[return-value]
+        first: Any = widened_where_feasible(found.design, structure or FEW)
+        return first, sliced.walls
     raise FitError(f"no blade that can be built was found near the points ({refusal}); {AXES_HINT}")
 
 

@@ -6,7 +6,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.polynomial.polynomial import polyfit, polyval
 from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 from scipy.spatial import cKDTree
@@ -106,10 +105,6 @@ class FirstChannel:
         """Abscissa (n,) in the plane of the section at v."""
         return np.asarray(self._ways[0].ev(v, u))
 
-    def u_at(self, abscissa: Reals, v: Reals) -> Reals:
-        """u (m, k) at abscissae (m, k) in the planes of the sections at increasing v (m,)."""
-        return np.stack([np.interp(at, row, ALONG) for at, row in zip(abscissa, self._ways[0](v, ALONG), strict=True)])
-
     def radius(self, u: Reals, v: Reals) -> Reals:
         """Radius (m, k) [m], or 1 of a cascade, at u (k,) and v (m,)."""
         return self._radii(self.position(u, v[:, None]))
@@ -157,8 +152,6 @@ def _through(line: Reals, count: int, ends: Reals) -> Reals:
 
 STATIONS: Reals = np.linspace(0.0, 1.0, 9)
 """v of the slices"""
-MOST_TRIM = 0.2
-"""most by which an edge moves to the ends of the cambers, in u (design/first_guesses.md)"""
 CHANNEL = INITIAL_BLADES[1].channel
 """control points of the channel's curves"""
 LAW_COUNT = 4
@@ -183,6 +176,8 @@ class SlicedChannel:
     slices: Slices
     outside: float
     """mean distance of the points from the channel, past its walls, in chords"""
+    walls: tuple[Reals, ...]
+    """(m, 2) places of hub and shroud on the outline of the points [m]"""
 
     @property
     def mean_distance(self) -> float:
@@ -229,23 +224,8 @@ def ranked_channels(
 
 
 def sliced_channel(machine: Reals, named: dict[str, Reals], *, revolved: bool) -> SlicedChannel:
-    """The slices in the channel of one outline; their cambers begin and end at its edges.
-
-    Noses of staggered sections reach past the ends of their camber, so that the edges are moved to these once, by what
-    changes evenly along the span.
-    """
+    """The points in the planes of the stream surfaces of one outline's channel, and slices from edge to edge."""
     channel = channel_through(named, CHANNEL, revolved=revolved)
-    slices = _sliced(machine, channel).slices
-    channel = channel_through(_trimmed(channel, slices), CHANNEL, revolved=revolved)
-    sliced = _sliced(machine, channel)
-    line = sliced.slices.camber.copy()
-    first, last = line[:, :1, 0], line[:, 3:, 0]
-    line[..., 0] = (line[..., 0] - first) / np.maximum(last - first, 0.2)
-    return replace(sliced, slices=replace(sliced.slices, camber=line))
-
-
-def _sliced(machine: Reals, channel: FirstChannel) -> SlicedChannel:
-    """The points in the planes of a channel's stream surfaces, and their slices."""
     u, v = channel.places(machine[:, :2])
     v = np.clip(v, 0.0, 1.0)
     past = machine[:, :2] - channel.position(u, v)
@@ -259,22 +239,16 @@ def _sliced(machine: Reals, channel: FirstChannel) -> SlicedChannel:
     slices = slices_of(plane, chord_direction(plane), STATIONS, LAW_COUNT)
     camber = slices.camber.copy()
     camber[..., 1] += (law_basis(LAW_COUNT, STATIONS) @ place / channel.extents(STATIONS)[0])[:, None]
-    slices = replace(slices, camber=camber)
     outside = float(np.mean(length(past) / lengths)) / float(np.mean(slices.chords))
-    return SlicedChannel(channel=channel, plane=plane, slices=slices, outside=outside)
-
-
-def _trimmed(channel: FirstChannel, slices: Slices) -> dict[str, Reals]:
-    """The four curves of a channel between the ends of the cambers, as a straight line along the span has these."""
-    ends = channel.u_at(slices.camber[:, [0, 3], 0] * channel.extents(slices.v)[0][:, None], slices.v)
-    # of single slices they are less well known than the outline
-    first, last = polyval(slices.v, polyfit(slices.v, ends, 1))
-    first, last = np.clip(first, -MOST_TRIM, MOST_TRIM), np.clip(last, 1.0 - MOST_TRIM, 1.0 + MOST_TRIM)
-    pieces = {name: channel.position(u, slices.v) for name, u in (("leading_edge", first), ("trailing_edge", last))}
-    for name, row in (("hub", 0), ("shroud", -1)):
-        u = np.linspace(first[row], last[row], 41)
-        pieces[name] = channel.position(u, slices.v[row])
-    return pieces
+    first, last = camber[:, :1, 0], camber[:, 3:, 0]
+    camber[..., 0] = (camber[..., 0] - first) / np.maximum(last - first, 0.2)
+    return SlicedChannel(
+        channel=channel,
+        plane=plane,
+        slices=replace(slices, camber=camber),
+        outside=outside,
+        walls=(named["hub"], named["shroud"]),
+    )
 
 
 def pairings(machine: Reals, pieces: list[Reals], *, revolved: bool) -> tuple[int, ...]:

@@ -91,6 +91,8 @@ class Task:
     """whether a search is only to begin another: what its few control points miss is shared by neighbours, no noise"""
     walls: tuple[Reals, ...] = ()
     """(m, 2) points of hub and shroud beside the blade, in (x, r) or (x, z) [m]: they show where it ends"""
+    outline: tuple[Reals, ...] = ()
+    """(m, 2) places of hub and shroud on the outline of the points [m], by which a preliminary search knows its ends"""
     turn: float = 0.0
     """angle about x by which the points are turned from where they are given [rad]"""
     held: frozenset[str] = frozenset()
@@ -300,7 +302,8 @@ def _prepared_round(
         raise FitError("the start design has no shape near its edges: give another start, or none")
     footpoints = nearest_footpoints(points, shape.sides)
     noise_estimate = noise_of(points, footpoints, task.precision, allow_outliers=task.allow_outliers)
-    ends = blade_ends_of(points, footpoints, shape, noise_estimate.inliers, task.walls)
+    walls = task.walls or (task.outline if task.preliminary else ())
+    ends = blade_ends_of(points, footpoints, shape, noise_estimate.inliers, walls)
     rows = noise_estimate.inliers & ~ends.on_end_face
     misfit = float(np.sqrt(np.mean(footpoints.distances[rows] ** 2))) / model.chord
     # of a cloud without noise the true edge is to cost nothing, but where points are doubted
