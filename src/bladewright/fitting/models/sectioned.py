@@ -7,8 +7,10 @@ from typing import Any, final
 import numpy as np
 
 from bladewright.blade.design.sectioned import SectionedBlade
-from bladewright.blade.exact.cut_sectioned import exact_blade_of_sections
+from bladewright.blade.exact.cut_sectioned import ExactCutBlade, exact_blade_of_sections
+from bladewright.blade.exact.prescribed_edges import PrescribedEdges
 from bladewright.blade.exact.sectioned import ENDS, PLACING
+from bladewright.blade.flow_path.intersections import EXTENSION
 from bladewright.blade.flow_path.stream_surfaces import KEPT
 from bladewright.blade.native.blade import side_surface
 from bladewright.blade.native.interpolation import edge_faces, native_sides
@@ -48,6 +50,8 @@ SLOWEST_PACE = 0.003
 (design/matching_constants.md)"""
 SMALLEST_GAP = 1e-4
 """smallest distance of the two sides from each other, in chords; at 0 the family refuses them"""
+MET_MARGIN = 0.01
+"""how far before the end of an edge curve, continued, it must meet hub and shroud, of its parameter"""
 OPENING_MARGIN = 0.003
 """smallest distance of an edge's opening from the largest one that the family allows
 (design/matching_constants.md)"""
@@ -145,7 +149,7 @@ class SectionedModel(SpatialModel):
         sides = [side_surface(net, self.knots, DEGREE) for net in native_sides(stations, self.knots)]
         faces = edge_faces(stations, sides[0], sides[1], self.knots) if any(self.blunt) else {}
         upper, lower = closed_with(sides[0], sides[1], faces)
-        rows = infeasibility(design.section, FEASIBILITY_SPAN), _fold_margins(exact, exact)
+        rows = infeasibility(design.section, FEASIBILITY_SPAN), _flow_path_margins(exact, exact)
         constraints = np.concatenate([np.real(each) for each in rows])
         return ModelShape(design=design, sides=(upper, lower), exact=exact, constraints=constraints)
 
@@ -157,24 +161,32 @@ class SectionedModel(SpatialModel):
         return np.moveaxis(rates[0], -2, 1), np.moveaxis(rates[1], -2, 1)
 
     def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
-        """Derivatives of the sections' infeasibility, and of how near the flow path is to folding over."""
-        folds = np.zeros((len(paths), FOLD_GRID[0] * FOLD_GRID[1]))
-        own = infeasibility_rates(shape, paths, FEASIBILITY_SPAN, len(shape.constraints) - folds.shape[1])
-        names = PLACING if shape.design.flow_path.matched == "edges" else PLACING[:1]
-        moving = [place for place, path in enumerate(paths) if path.startswith(names)]
+        """Derivatives of the sections' infeasibility, and of how near flow path and edges are to what is refused."""
+        margins = np.zeros((len(paths), len(_flow_path_margins(shape.exact, shape.exact))))
+        own = infeasibility_rates(shape, paths, FEASIBILITY_SPAN, len(shape.constraints) - margins.shape[1])
+        moving = [place for place, path in enumerate(paths) if path.startswith(PLACING[:3])]
         if moving:
             moved = shape.exact.moved_to(shape.design.changed(complex_steps(shape.design, [paths[i] for i in moving])))
-            folds[moving] = np.imag(_fold_margins(shape.exact, moved)) / STEP
-        return np.concatenate([own, folds], axis=1)
+            margins[moving] = np.imag(_flow_path_margins(shape.exact, moved)) / STEP
+        return np.concatenate([own, margins], axis=1)
 
 
-def _fold_margins(exact: Any, moved: Any) -> Array:
-    """By how much the flow path of a blade that has moved comes nearer to folding over than it may (..., c)."""
+def _flow_path_margins(exact: Any, moved: Any) -> Array:
+    """By how much a blade that has moved comes nearer to what its flow path refuses than it may (..., c).
+
+    The flow path may not fold over, and edge curves, continued, must meet hub and shroud.
+    """
     own = exact.meridional_channel(ENDS, ENDS)
     # paths that are matched at the edges end where they fold
     low, high = own.extent if exact.design.flow_path.matched == "ends" else (-KEPT, 1.0 + KEPT)
     t, v = np.linspace(low, high, FOLD_GRID[0]), np.linspace(0.0, 1.0, FOLD_GRID[1])
-    return fold_margins(own.grid(t, v)[1:], moved.meridional_channel(ENDS, ENDS).grid(t, v)[1:])
+    rows = [fold_margins(own.grid(t, v)[1:], moved.meridional_channel(ENDS, ENDS).grid(t, v)[1:])]
+    placement = (moved.whole if isinstance(moved, ExactCutBlade) else moved).placement
+    if isinstance(placement, PrescribedEdges):
+        for _, place in placement.intersections(ENDS):
+            rows += [MET_MARGIN - EXTENSION - place, place - 1.0 - EXTENSION + MET_MARGIN]
+    shape = np.broadcast_shapes(*[each.shape[:-1] for each in rows])
+    return np.concatenate([np.broadcast_to(each, (*shape, each.shape[-1])) for each in rows], axis=-1)
 
 
 @model_of.register
