@@ -57,3 +57,15 @@ def test_the_likeliest_channel_follows_the_outline_where_outliers_bend_it():
         ends = true.line(edge).values(np.array([0.0, 1.0]))
         away = np.sqrt(np.sum((found.channel.curves[edge][[0, -1]] - ends) ** 2, axis=-1))
         assert np.max(away) < 0.1 * blade.chord
+
+
+@pytest.mark.parametrize("name", ["compressor-stator", "centrifugal-impeller", "radial-turbine", "fan-rotor"])
+def test_the_corners_of_a_first_channel_stand_where_those_of_the_blade_do(name):
+    count = 4000
+    machine, blade = cloud(name, count)
+    found, true = ranked_channels(machine, slice(0, 1200), revolved=True)[0], blade.exact.channel.real()
+    for edge in ("leading_edge", "trailing_edge"):
+        ends = true.line(edge).values(np.array([0.0, 1.0]))
+        away = np.sqrt(np.sum((found.channel.curves[edge][[0, -1]] - ends) ** 2, axis=-1))
+        # as far as the points of a side stand apart
+        assert np.max(away) < blade.chord / np.sqrt(count / 2)

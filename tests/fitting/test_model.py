@@ -1,14 +1,17 @@
 """Derivatives of what a search sees of a design, against central differences."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 
+from bladewright.errors import DesignError
 from bladewright.fitting.clouds.cloud import checked_cloud
 from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footpoints
 from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.models.model import model_of
+from bladewright.fitting.models.sectioned import _flow_path_margins
 from bladewright.fitting.models.unified import _fold_margins
 from machines import example
 from machines.sectioned import BLUNT
@@ -91,6 +94,42 @@ def test_folds_of_a_channel_change_as_central_differences_say():
     found = differences("compressor-stator", constraints)
     np.testing.assert_allclose(found / scaled(exact), exact / scaled(exact), atol=3e-6)
     assert np.all(shape.constraints < 0.0)
+
+
+@pytest.mark.parametrize("matched", ["ends", "edges"])
+def test_what_a_flow_path_refuses_changes_as_central_differences_say(matched):
+    plain = example("backswept-impeller")
+    design = replace(plain, flow_path=replace(plain.flow_path, matched=matched, quasi_orthogonals=()))
+    model = model_of(design)
+    shape, values = model.shape(design), design.parameters()
+    names = [path for path in values if path.startswith(("flow_path.", "leading_edge.", "trailing_edge."))]
+    exact = model.constraint_rates(shape, names)
+    found = []
+    for path in names:
+        ends = [
+            np.real(_flow_path_margins(shape.exact, model.shape(design.changed(path, values[path] + step)).exact))
+            for step in (1e-4, -1e-4)
+        ]
+        found.append((ends[0] - ends[1]) / 2e-4)
+    np.testing.assert_allclose(np.array(found) / scaled(exact), exact / scaled(exact), atol=3e-6)
+    assert np.all(shape.constraints < 0.0)
+    # every one of these parameters moves what is refused, but for edges where the ends are matched and folds alone
+    assert np.all(np.any(exact != 0.0, axis=1))
+
+
+def test_the_margins_of_a_flow_path_are_spent_before_it_is_refused():
+    design = example("backswept-impeller")
+    model = model_of(design)
+    for path, ahead in (("flow_path.shroud.points[5].x", 10.0), ("leading_edge.control_points[0].r", 10.0)):
+        value, least = design.parameters()[path], 0.0
+        for share in np.linspace(0.0, 1.0, 201):
+            try:
+                shape = model.shape(design.changed(path, value + share * ahead))
+            except DesignError:
+                break
+            least = float(np.max(shape.constraints))
+        assert share < 1.0
+        assert least > 0.0
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -8,6 +8,7 @@ from scipy.spatial import cKDTree
 
 from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.designs import Point
+from bladewright.errors import DesignError
 from bladewright.fitting.assessment.acceptance import MatchTarget
 from bladewright.fitting.families.first_parts import profile_parts, through_points
 from bladewright.fitting.families.kinds import FAMILIES, DesignHeader
@@ -19,8 +20,9 @@ from bladewright.fitting.model_selection import reshaping
 from bladewright.fitting.model_selection.elimination import LinearModel
 from bladewright.fitting.model_selection.reshaping import reshaped, rich_structure, richest
 from bladewright.fitting.model_selection.structure import resizable_laws, structure_of
-from bladewright.fitting.models.sectioned import infeasibility
+from bladewright.fitting.models.sectioned import PlanarModel, infeasibility
 from bladewright.section.laws import Span
+from bladewright.section.suction_pressure.part import SuctionPressureSection
 from machines.meanlines import BLUNT, on_meanline
 from machines.sectioned import COMPRESSOR, DESIGNS, DIFFUSER
 from machines.sections import EXAMPLES
@@ -167,3 +169,21 @@ def test_a_section_on_too_short_a_tangent_is_crowded_before_it_is_refused():
         reach *= 0.998
     # crowding begins while the section can still be made
     assert replace(STATOR, pressure_tangent_in=reach).outline(ALONE).points(PLACES)[0].shape == (1, 33, 2)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"suction_tangent_in": 0.0008},
+        {"pressure_heights": (0.2, 0.25, 0.2)},
+    ],
+    ids=["turns back", "cross"],
+)
+def test_a_search_sees_sections_that_are_refused_and_by_how_much(change):
+    part = replace(STATOR, **change)
+    with pytest.raises(DesignError, match=r"turn back|cross"):
+        part.outline(ALONE).check_limits([""])
+    design = SuctionPressureSection(name="refused", length_unit="mm", chord=50.0, section=part)
+    shape = PlanarModel(design, 1e-3).shape(design)
+    assert shape.finite
+    assert np.max(shape.constraints) > 0.0

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import bladewright as bw
-from bladewright.designs import Point
+from bladewright.designs import Point, limits_at
+from bladewright.files.examples import examples
 from bladewright.fitting.matching.residuals import (
     BEND_SPREAD,
     CAMBER_SPREAD,
@@ -16,7 +17,7 @@ from bladewright.fitting.matching.residuals import (
     USUAL_TANGENT,
     regularisation_of,
 )
-from bladewright.fitting.matching.scales import check_bounds, scales_of
+from bladewright.fitting.matching.scales import check_bounds, part_range, scales_of
 from bladewright.section.checks import UNITS
 from machines import example
 
@@ -153,3 +154,16 @@ def test_an_edge_may_move_and_tilt_and_its_last_point_does_not_leave_the_others(
     # the edge itself is bent, and that costs nothing
     np.testing.assert_allclose(found.rhs, 0.0, atol=1e-12)
     assert np.sum(rows**2) == pytest.approx(np.sum((change / CHANNEL_SPREAD) ** 2) + bent, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", [name for name in examples() if hasattr(example(name), "section")])
+def test_every_parameter_may_go_to_either_end_of_its_scale(name):
+    part = example(name).section
+    for path, value in part.parameters().items():
+        scale, limits = part_range(part, path, value, abs(value)), limits_at(part, path)
+        if limits is None:
+            continue
+        assert limits.low <= scale.low < scale.high <= limits.high
+        for end in (scale.low, scale.high):
+            if np.isfinite(end):
+                assert limits.closed or limits.low < end < limits.high
