@@ -21,8 +21,10 @@ from bladewright.fitting.model_selection.elimination import LinearModel
 from bladewright.fitting.model_selection.reshaping import reshaped, rich_structure, richest
 from bladewright.fitting.model_selection.structure import resizable_laws, structure_of
 from bladewright.fitting.models.sectioned import PlanarModel, infeasibility
+from bladewright.section.camber_angle import CamberAngleSection
 from bladewright.section.laws import Span
 from bladewright.section.suction_pressure.part import SuctionPressureSection
+from machines.camber_angles import CAMBER_ANGLES
 from machines.meanlines import BLUNT, on_meanline
 from machines.sectioned import COMPRESSOR, DESIGNS, DIFFUSER
 from machines.sections import EXAMPLES
@@ -172,18 +174,25 @@ def test_a_section_on_too_short_a_tangent_is_crowded_before_it_is_refused():
 
 
 @pytest.mark.parametrize(
-    "change",
+    ("kind", "part", "change", "words"),
     [
-        {"suction_tangent_in": 0.0008},
-        {"pressure_heights": (0.2, 0.25, 0.2)},
+        (SuctionPressureSection, STATOR, {"suction_tangent_in": 0.0008}, "turn back"),
+        (SuctionPressureSection, STATOR, {"pressure_heights": (0.2, 0.25, 0.2)}, "cross"),
+        (
+            CamberAngleSection,
+            CAMBER_ANGLES["camber-angle"],
+            {"half_thickness": (0.002, 0.04, 0.04, 0.03, 0.008)},
+            "rises beside",
+        ),
     ],
-    ids=["turns back", "cross"],
+    ids=["turns back", "cross", "rises"],
 )
-def test_a_search_sees_sections_that_are_refused_and_by_how_much(change):
-    part = replace(STATOR, **change)
-    with pytest.raises(DesignError, match=r"turn back|cross"):
-        part.outline(ALONE).check_limits([""])
-    design = SuctionPressureSection(name="refused", length_unit="mm", chord=50.0, section=part)
-    shape = PlanarModel(design, 1e-3).shape(design)
-    assert shape.finite
-    assert np.max(shape.constraints) > 0.0
+def test_a_search_sees_sections_that_are_refused_and_by_how_much(kind, part, change, words):
+    refused = replace(part, **change)
+    with pytest.raises(DesignError, match=words):
+        refused.outline(ALONE).check_limits([""])
+    for each, sign in ((part, -1.0), (refused, 1.0)):
+        design = kind(name="refused", length_unit="mm", chord=50.0, section=each)
+        shape = PlanarModel(design, 1e-3).shape(design)
+        assert shape.finite
+        assert sign * np.max(shape.constraints) > 0.0

@@ -1,5 +1,6 @@
 """Sections on camber lines of given angle: the camber line is an exact integral, the half thickness a NURBS."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -119,7 +120,7 @@ class CamberAngleOutline(Outline):
     def _parameter(self, s: Reals, piece: NDArray[np.intp], order: int) -> Series:
         """The NURBS's parameter: s, bent in the pieces beside round edges."""
         at = variable(s, order)
-        first, last = self._bends
+        first, last = self.bends
         width = float(self.places.ends[1])
         near = at * (1.0 / width)
         rest = 1.0 - near
@@ -132,26 +133,30 @@ class CamberAngleOutline(Outline):
         return found + near * near * rest * rest * rest * (last[..., None] * width) * in_last_piece
 
     @cached_property
-    def _bends(self) -> tuple[Array, Array | None]:
+    def bends(self) -> tuple[Array, Array | None]:
         """h'' / (2 h') times the width of a piece, at the leading and at a round trailing edge (...)."""
         width = float(self.places.ends[1])
-        last = self._bend(1.0, -width, "trailing") if self.end == "round" else None
-        return self._bend(0.0, width, "leading"), last
+        return self._bend(0.0, width), self._bend(1.0, -width) if self.end == "round" else None
 
-    def _bend(self, place: float, width: float, name: str) -> Array:
+    def _bend(self, place: float, width: float) -> Array:
         at, piece = variable(np.array([place]), 2), self.places.piece(np.array([place]))
         height = self.heights.values(at, piece) / self.weights.values(at, piece)
-        bend: Array = (height.coefficients[2] / height.coefficients[1])[..., 0] * width
-        if np.any(np.real(bend) > STEEPEST):
+        return np.asarray((height.coefficients[2] / height.coefficients[1])[..., 0] * width)
+
+    def check_limits(self, where: Sequence[str]) -> None:
+        for name, bend in zip(("leading", "trailing"), self.bends, strict=True):
+            if bend is None or not np.any(np.real(bend) > STEEPEST):
+                continue
+            steepest = np.broadcast_to(np.real(bend), len(where))
+            worst = int(np.argmax(steepest))
             raise DesignError(
-                f"half_thickness rises beside the {name} edge to {2.0 * np.max(np.real(bend)) + 3.0:.3g} times its "
-                f"value at the edge: at most {2.0 * STEEPEST + 3.0:g} times; raise the value at the edge"
+                f"half_thickness rises beside the {name} edge{where[worst]} to {2.0 * steepest[worst] + 3.0:.3g} times "
+                f"its value at the edge: at most {2.0 * STEEPEST + 3.0:g} times; raise the value at the edge"
             )
-        return bend
 
     def _where(self, x: Reals) -> Reals:
         """s (...) of real fractions (...) of m'."""
-        shape = np.broadcast_shapes(x.shape, self.places.controls.shape[:-1], self._bends[0].shape)
+        shape = np.broadcast_shapes(x.shape, self.places.controls.shape[:-1], self.bends[0].shape)
         own = np.arange(int(np.prod(shape)))
 
         def residual(s: Array) -> tuple[Array, Array]:

@@ -30,6 +30,8 @@ from bladewright.fitting.models.model import (
 from bladewright.numerics.elementary import Array, radians
 from bladewright.nurbs.basis import Reals, greville
 from bladewright.nurbs.curve import Curve
+from bladewright.section.camber_angle import CamberAngle
+from bladewright.section.camber_angle_outline import STEEPEST
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import Span
 from bladewright.section.native import DEGREE, interpolated_along_u, side_knots_for
@@ -50,6 +52,8 @@ SLOWEST_PACE = 0.003
 (design/matching_constants.md)"""
 SMALLEST_GAP = 1e-4
 """smallest distance of the two sides from each other, in chords; at 0 the family refuses them"""
+STEEP_MARGIN = 0.01
+"""share of the steepest half thickness beside a round edge that the family allows which is kept free"""
 MET_MARGIN = 0.01
 """how far before the end of an edge curve, continued, it must meet hub and shroud, of its parameter"""
 OPENING_MARGIN = 0.003
@@ -202,6 +206,9 @@ def infeasibility(part: Any, span: Span) -> Array:
     """
     if isinstance(part, Segmented):
         return _turning_back(part.outline(span))
+    if isinstance(part, CamberAngle):
+        steep = [each for each in part.outline(span).bends if each is not None]
+        return np.concatenate(np.broadcast_arrays(*steep), axis=-1) / STEEPEST - (1.0 - STEEP_MARGIN)
     if not isinstance(part, SuctionPressure):
         return np.zeros(0)
     edges = edge_points(part, span)
