@@ -2,16 +2,18 @@
 
 import numpy as np
 import pytest
+from scipy.stats import binomtest
 
 import bladewright as bw
-from bladewright.fitting.matching.footpoints import Footpoints
-from bladewright.fitting.matching.noise import crowded_at_edges, doubted_outliers
+from bladewright.fitting.matching.footpoints import Footpoints, nearest_footpoints
+from bladewright.fitting.matching.noise import SIGNIFICANCE, crowded_at_edges, doubted_outliers
 from bladewright.section.wedge_diffuser import WedgeDiffuser
+from machines import example
 
 COUNT = 2000
 
 
-def outliers_of(share_at_edge, *, inside=True):
+def outliers_of(share_at_edge, *, inside=True, off=0.01):
     """Footpoints spread evenly along a straight side, and 40 outliers, so many of them at its leading edge."""
     u = np.linspace(0.0, 1.0, COUNT)
     at_edge = np.flatnonzero(u < 0.1)
@@ -29,20 +31,32 @@ def outliers_of(share_at_edge, *, inside=True):
         points=points,
         normals=normals,
         beyond=np.zeros((COUNT, 2)),
-        miss=0.01 * (outliers * sign)[:, None] * normals,
+        miss=off * (outliers * sign)[:, None] * normals,
     )
     return outliers, feet
 
 
-def test_outliers_inside_an_edge_are_crowded_where_more_lie_there_than_by_chance():
-    found = crowded_at_edges(*outliers_of(0.3))
+@pytest.mark.parametrize("inside", [True, False])
+def test_outliers_at_an_edge_are_crowded_where_more_lie_there_than_by_chance(inside):
+    found = crowded_at_edges(*outliers_of(0.3, inside=inside))
     assert list(found) == ["leading edge"]
     assert np.count_nonzero(found["leading edge"]) == 12
 
 
-@pytest.mark.parametrize(("share", "inside"), [(0.1, True), (0.3, False)])
-def test_outliers_are_not_crowded_by_chance_or_outside_the_blade(share, inside):
-    assert not crowded_at_edges(*outliers_of(share, inside=inside))
+@pytest.mark.parametrize(("share", "inside", "off"), [(0.1, True, 0.01), (0.1, False, 0.01), (0.3, False, 0.2)])
+def test_outliers_are_not_crowded_by_chance_or_where_an_edge_is_nearest_from_far_around(share, inside, off):
+    assert not crowded_at_edges(*outliers_of(share, inside=inside, off=off))
+
+
+def test_outliers_in_any_direction_crowd_at_a_true_edge_no_more_often_than_said():
+    built, draw, found, clouds = example("turbine-section").build(), np.random.default_rng(8), 0, 150
+    sides = built.curves["upper"], built.curves["lower"]
+    for _ in range(clouds):
+        points = np.concatenate([side((1.0 - np.cos(np.pi * draw.random(500))) / 2.0) for side in sides])
+        outliers, way = draw.random(len(points)) < 0.05, draw.normal(size=points.shape)
+        way *= (outliers * built.chord * draw.uniform(0.005, 0.05, len(points)) / np.hypot(*way.T))[:, None]
+        found += len(crowded_at_edges(outliers, nearest_footpoints(points + way, sides)))
+    assert binomtest(found, 2 * clouds, SIGNIFICANCE, alternative="greater").pvalue > 0.01
 
 
 @pytest.mark.parametrize(("systematic", "doubted"), [(True, range(4)), (False, ())])

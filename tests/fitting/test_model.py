@@ -103,7 +103,8 @@ def test_what_a_flow_path_refuses_changes_as_central_differences_say(matched):
     model = model_of(design)
     shape, values = model.shape(design), design.parameters()
     names = [path for path in values if path.startswith(("flow_path.", "leading_edge.", "trailing_edge."))]
-    exact = model.constraint_rates(shape, names)
+    count = len(_flow_path_margins(shape.exact, shape.exact))
+    exact = model.constraint_rates(shape, names)[:, -count:]
     found = []
     for path in names:
         ends = [

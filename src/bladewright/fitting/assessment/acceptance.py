@@ -99,7 +99,7 @@ def failures_of(
             "belong to something else; leave them out, or give a start"
         )
     crowded = crowded_at_edges(outliers, measurement.footpoints) if target.open else {}
-    places = {f"inside the {name}": rows for name, rows in crowded.items()}
+    places = {f"at the {name}": rows for name, rows in crowded.items()}
     # points off a true surface lie to either side of it: the sign test (Dixon and Mood 1946)
     inside = outliers & (measurement.deviations < 0.0)
     count = int(np.count_nonzero(inside))

@@ -209,18 +209,24 @@ def groups(linked: NDArray[np.bool_], index: NDArray[np.intp]) -> NDArray[np.int
 
 
 def crowded_at_edges(outliers: NDArray[np.bool_], footpoints: Footpoints) -> dict[str, NDArray[np.bool_]]:
-    """Which of n points are outliers inside the blade at an edge, by name, where more are than chance puts there.
+    """Which of n points are outliers at an edge, by its name, where more are than chance puts there.
 
-    Outliers lie anywhere, to either side of a true surface; those of an edge that is not found lie at it, and inside
-    (exact binomial test: Conover 1999, section 3.1).
+    Outliers lie anywhere, to either side of a true surface; those of an edge that is not found lie at it (binomial
+    test: Conover 1999, section 3.1). Inside, as many are at an edge as points are; outside, an edge is nearest to what
+    came from as far around it as it is off (as many at most: Hoeffding 1956).
     """
     found, off, inside = {}, int(np.count_nonzero(outliers)), outliers & (footpoints.heights < 0.0)
     for name, end in EDGE_PARAMETERS.items():
         at_edge = np.abs(footpoints.u - end) < BETWEEN_EDGES
-        share, crowded = 0.5 * float(np.mean(at_edge)), inside & at_edge
-        count = int(np.count_nonzero(crowded))
-        if count and binomtest(count, off, share, alternative="greater").pvalue < SIGNIFICANCE:
-            found[name] = crowded
+        if not np.any(outliers & at_edge) or np.all(outliers):
+            continue
+        reach = np.sort(cKDTree(footpoints.points[at_edge]).query(footpoints.points[~outliers])[0])
+        around = np.searchsorted(reach, footpoints.distances[outliers], side="right") / len(reach)
+        shares = (inside & at_edge, 0.5 * float(np.mean(at_edge))), (outliers & at_edge, float(np.mean(around)))
+        for crowded, share in shares:
+            count = int(np.count_nonzero(crowded))
+            if count and binomtest(count, off, share, alternative="greater").pvalue < SIGNIFICANCE:
+                found[name] = crowded
     return found
 
 
