@@ -19,6 +19,7 @@ from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import FreeParameters, gauge_parameters, sliding_coordinate
 from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.matching.search import Task
+from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.fitting.models.blunt_edges import sides_of
 from bladewright.fitting.models.model import model_of
 from bladewright.section.laws import Span
@@ -74,6 +75,13 @@ def test_a_vane_is_found_again_from_a_start_that_is_off():
     assert not any(each.path.startswith("flow_path") for each in found.estimates)
 
 
+def test_a_start_takes_the_structure_of_another_design():
+    like = VANE.changed("leading_edge_theta", (0.0, 0.0))
+    found = fit(cloud(), start=VANE, like=like)
+    assert found.maximum < 1e-9 * found.built.chord
+    assert structure_of(found.design) == structure_of(like)
+
+
 def test_flow_path_and_the_way_along_edge_curves_stand():
     assert gauge_parameters(COMPRESSOR.changed("density", 7800.0)) - gauge_parameters(COMPRESSOR) == {"density"}
     held = gauge_parameters(COMPRESSOR)
@@ -109,7 +117,7 @@ def test_a_section_for_the_flow_from_the_other_side_has_its_edges_exchanged_and_
 
 def test_edges_of_another_kind_than_points_are_refused():
     with pytest.raises(FitError, match="give the design as start"):
-        ChannelCurves(blade=None).edge_like("leading_edge", None, 1e-3)
+        ChannelCurves(exact=None).edge_like("leading_edge", None, 1e-3)
 
 
 def test_an_edge_whose_corner_has_slid_along_its_wall_runs_on_as_the_rest_of_it():
@@ -119,7 +127,7 @@ def test_an_edge_whose_corner_has_slid_along_its_wall_runs_on_as_the_rest_of_it(
         "shroud": lambda t: 1e-3 * np.stack([43.0 + 0.0 * t, 55.0 + 45.0 * t], axis=-1),
     }
     channel = SimpleNamespace(line=lambda name: SimpleNamespace(values=lines[name]))
-    found = ChannelCurves(blade=SimpleNamespace(exact=SimpleNamespace(channel=channel))).edge("trailing_edge", 1e-3)
+    found = ChannelCurves(exact=SimpleNamespace(channel=channel)).edge("trailing_edge", 1e-3)
     steps = np.diff(np.array(found.points), axis=0)
     assert np.all(np.abs(steps[:, 1]) < np.abs(steps[:, 0]))
 
@@ -156,9 +164,9 @@ def test_where_radii_differ_the_machine_may_be_turned_until_the_leading_edge_sta
     task = Task(points=cloud(), weights=np.ones(240), free=FreeParameters(), bounds={})
 
     def planes(last, arrangement="annular"):
-        blade = SimpleNamespace(design=SimpleNamespace(arrangement=arrangement))
+        exact = SimpleNamespace(design=SimpleNamespace(arrangement=arrangement))
         radii = {"leading_edge": 1.0, "trailing_edge": last}
-        edges = SimpleNamespace(values=lambda name, _: np.array([[0.0, radii[name]]]), blade=blade, backwards=False)
+        edges = SimpleNamespace(values=lambda name, _: np.array([[0.0, radii[name]]]), exact=exact, backwards=False)
         return blades._planes(task, edges, None, shape)
 
     assert planes(1.5) == [("m'-theta", 0.0), ("m-r*theta", 0.0), ("m-r*theta", -0.4)]

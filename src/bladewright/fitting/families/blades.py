@@ -1,15 +1,13 @@
 """From points in space to a blade from sections of a family."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import groupby, islice
+from itertools import groupby
 from typing import Any
 
 import numpy as np
 
 from bladewright.blade.design.sectioned import SectionedBlade
-from bladewright.blade.native.blade import Blade
 from bladewright.designs import Design, unit_at
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import SHARED_VARIANCE, MatchTarget
@@ -22,7 +20,8 @@ from bladewright.fitting.free_parameters import EDGES, FreeParameters, gauge_par
 from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.scales import check_bounds, part_range
-from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
+from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, evaluated, searched
+from bladewright.fitting.model_selection.reshaping import reshaped
 from bladewright.fitting.model_selection.selection import (
     GUESS_NOISE,
     QUICK_POINTS,
@@ -33,18 +32,14 @@ from bladewright.fitting.model_selection.selection import (
     selected_match,
 )
 from bladewright.fitting.model_selection.structure import INITIAL_BLADES, structure_of
-from bladewright.fitting.models.blunt_edges import sides_of
+from bladewright.fitting.models.model import ModelShape
 from bladewright.fitting.models.sectioned import infeasibility
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import Span, law_points
-from bladewright.section.unified_limits import RADII
 
 QUICK_ROUNDS = 4
 """rounds of the search for the closed blade from which the family's first design is taken"""
-SMALLER_RADII = (0.8, 0.4, 0.2)
-"""shares of its edge radii with which a closed blade is built that is refused with all, one after the other: the wedge
-diffuser needs less than 0.7 (design/matching.md)"""
 WALLS_HELD_NOTE = "hub and shroud are held as they are given"
 """note where the flow path is given"""
 ROUNDNESS_PLACE, ROUNDER_RATIO = 0.04, 1.3
@@ -80,14 +75,15 @@ def matched_blade(
     if own and isinstance(task.free, FreeParameters):
         task = replace(task, free=replace(task.free, walls=True))
     first: Any = start
-    if start is None or like is not None:
-        closed = _closed_blades(task, header, like) if start is None else iter([start.build()])
-        turn, first = _first_of(task, closed, kind, like, header)
+    if start is None:
+        turn, first = _first_of(task, _closed_blades(task, header, like), kind, like, header)
         task = task.turned(turn)
+    elif like is not None:
+        first = reshaped(start, structure_of(like))
     first = task.free.applied(first) if isinstance(task.free, FreeParameters) else first
     check_bounds(first, task.free(first), task.bounds)
     structure = None if like is None else structure_of(like)
-    found, reason = selected_match(task, first, target, like=structure, guessed=first is not start)
+    found, reason = selected_match(task, first, target, like=structure, guessed=start is None)
     misfit = is_far(found, target) and found.noise_estimate.correlation > SHARED_VARIANCE
     if kind.through_points is not None and own and misfit and target.parameters is None:
         outlined = _through_points(task, kind, found, target)
@@ -127,31 +123,23 @@ def _shapes_of(part: Any) -> list[SectionShape]:
     ]
 
 
-def _closed_blades(task: Task, header: DesignHeader, like: Any) -> Iterator[Blade]:
-    """Closed blades of the unified family that a task's points show: one that is searched, and one less near."""
+def _closed_blades(task: Task, header: DesignHeader, like: Any) -> Iterator[ModelShape]:
+    """Closed blades of the unified family that a task's points show: one that is searched, and one less near.
+
+    Their sections and channels are all that is taken, so that they need not be fit to be built.
+    """
     points, row = task.thinned(THOROUGH_POINTS).points, header.row(like)
     first, outline = first_blade(
         points, structure=INITIAL_BLADES[-1], name=header.name, length_unit=header.length_unit, **row
     )
     few = replace(task.thinned(QUICK_POINTS), free=FreeParameters(), bounds={}, walls=task.walls or outline)
-    found: Any = searched(few, first, noise=GUESS_NOISE, rounds=QUICK_ROUNDS).design
-    radii = {path: value for path, value in found.parameters().items() if path.startswith(RADII)}
-    smaller = (found.changed({path: share * value for path, value in radii.items()}) for share in SMALLER_RADII)
-    # searches hold edge radii at places along the span: between them they may be larger than the thickness holds
-    yield from islice(_built((found, *smaller)), 1)
-    # a corner that slides along a wall in the search leaves an edge that crosses the wall twice
-    yield from _built((first,))
-
-
-def _built(designs: Iterable[Any]) -> Iterator[Blade]:
-    """Those of the designs that can be built."""
-    for design in designs:
-        with suppress(DesignError):
-            yield design.build()
+    yield searched(few, first, noise=GUESS_NOISE, rounds=QUICK_ROUNDS).state.shape
+    # edges of the searched one may miss a wall
+    yield evaluated(few, first, noise=GUESS_NOISE).state.shape
 
 
 def _first_of(
-    task: Task, blades: Iterator[Blade], kind: FitFamily, like: Any, header: DesignHeader
+    task: Task, blades: Iterator[ModelShape], kind: FitFamily, like: Any, header: DesignHeader
 ) -> tuple[float, Design]:
     """What the first of the closed blades gives of which the family has a blade; FitError where none has."""
     refusal = FitError("no closed blade was found near the points: give a start design")
@@ -164,11 +152,11 @@ def _first_of(
     raise refusal
 
 
-def _band(task: Task, closed: Blade, v: float) -> Reals:
+def _band(task: Task, closed: ModelShape, v: float) -> Reals:
     """Points (n, 2) of the section at v of a closed blade, with the deviations of the points of the cloud beside it."""
     few = task.thinned(SEVERAL_POINTS)
-    feet = nearest_footpoints(few.points, sides_of(closed))
-    section = closed.section(v)
+    feet = nearest_footpoints(few.points, closed.sides)
+    section = closed.exact.section(v)
     found = []
     for number, name in enumerate(("upper", "lower")):
         rows = np.flatnonzero((feet.side == number) & (np.abs(feet.v - v) < BAND))
@@ -192,14 +180,14 @@ class _Frame:
     """at START_SPANS"""
 
 
-def _first(task: Task, closed: Blade, kind: FitFamily, like: Any, header: DesignHeader) -> tuple[float, Design]:
+def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: DesignHeader) -> tuple[float, Design]:
     """The blade of the family nearest to the points whose sections are those of a closed blade; the turn of its frame.
 
     Planes that the sections in the middle hardly tell apart are told apart by a short search of whole blades, of each
     plane with theta counted from where these meet it best.
     """
-    found = ChannelCurves(blade=closed)
-    built = [closed.section(float(v)) for v in START_SPANS]
+    found = ChannelCurves(exact=closed.exact)
+    built = [closed.exact.section(float(v)) for v in START_SPANS]
     middle = section_shape(built[MIDDLE])
     found = replace(found, backwards=_backwards(found, kind, like, middle))
     band = _band(task, closed, float(START_SPANS[MIDDLE]))
@@ -245,7 +233,7 @@ def _blade_of(
     found: ChannelCurves, frame: _Frame, blade: type[SectionedBlade], section: Any, like: Any, header: DesignHeader
 ) -> Any:
     """The blade of sections that stand where those of a closed blade do."""
-    design = found.blade.design
+    design = found.exact.design
     metre = UNITS[header.length_unit]
     linear = design.arrangement == "linear"
     place = [float(each.start[1]) / metre if linear else float(np.degrees(each.start[1])) for each in frame.shapes]
@@ -325,7 +313,7 @@ def _planes(task: Task, found: ChannelCurves, like: Any, middle: SectionShape) -
     Where radii differ, planes do not show the same shapes, and that of r theta neither wherever theta is counted from:
     nobody says, and where the leading edge stands its angles are true.
     """
-    if found.blade.design.arrangement == "linear":
+    if found.exact.design.arrangement == "linear":
         return [(CONFORMAL, 0.0)]
     if like is not None:
         return [(UNROLLED if like.plane == UNROLLED else CONFORMAL, 0.0)]

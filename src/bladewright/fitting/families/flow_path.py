@@ -12,7 +12,6 @@ from scipy.spatial import cKDTree
 from bladewright.blade.design.flow_path import FlowPath
 from bladewright.blade.design.meridional_curve import ControlPolygon, Meridian, ThroughPoints
 from bladewright.blade.flow_path.stream_surfaces import stream_surfaces
-from bladewright.blade.native.blade import Blade
 from bladewright.designs import Point
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.free_parameters import WALLS
@@ -45,12 +44,13 @@ CURVE_PLACES: Reals = np.linspace(0.0, 1.0, 201)
 class ChannelCurves:
     """A closed blade's channel, for the flow that it was found for, or for flow from the other side."""
 
-    blade: Blade
+    exact: Any
+    """the exact blade"""
     backwards: bool = False
 
     def values(self, name: str, at: Reals) -> Reals:
         """Points (m, 2) of one of the four curves in (x, r) [m]: walls downstream, edges from hub to shroud."""
-        channel: Any = self.blade.exact.channel  # type: ignore[attr-defined]
+        channel = self.exact.channel
         if self.backwards:
             name, at = OPPOSITE_CURVE[name], 1.0 - at
         return np.asarray(np.real(channel.line(name).values(at)))
