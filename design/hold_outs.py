@@ -3,8 +3,8 @@
     python design/hold_outs.py [--draw]
 
 Makes every cloud and compares it with the checksum that was written when the seeds were drawn (`secrets`, 24 November
-2026). Nothing is matched here: `design/matching.py --holdout` does that once, when the work on matching is done. The
-first hundred and twenty and 18 of the last thirty have been matched (group `opened`): work may look at them since.
+2026, the last 29 on the 27th). Nothing is matched here: `design/matching.py --holdout` does that once, when the work
+on matching is done. The first hundred and fifty and one of the last have been matched (group `opened`): work may look at them since.
 `--draw` draws others.
 """
 
@@ -165,21 +165,51 @@ OPENED: dict[str, tuple[int, float]] = {
     "opened-wedge-diffuser-21": (2119080557, 0.544384091),
     "opened-wedge-diffuser-22": (2732515657, 0.0535599603),
     "opened-wedge-diffuser-25": (216177109, 0.0907442188),
+    "opened-unified-23": (4085979253, 0.0822078298),
+    "opened-unified-24": (2541788910, 0.109416051),
+    "opened-curvature-meanline-23": (3841080054, 0.102052985),
+    "opened-curvature-meanline-24": (74332628, 0.0596423556),
+    "opened-suction-pressure-23": (841210703, 0.205462267),
+    "opened-suction-pressure-24": (983485425, 0.0243360769),
+    "opened-camber-angle-23": (2255218998, 0.525225536),
+    "opened-camber-angle-24": (2796777507, 0.195433592),
+    "opened-profile-23": (2706080686, 2.23833077),
+    "opened-profile-24": (3238675979, 0.0361043181),
+    "opened-wedge-diffuser-23": (4119323403, 0.38534164),
+    "opened-wedge-diffuser-24": (3847877969, 1.72198699),
+    "opened-wedge-diffuser-26": (3392568474, 0.216349901),
 }
 """the same of those that have been matched: they show nothing more about clouds that nobody has seen"""
 SEEDS: dict[str, tuple[int, float]] = {
-    "hold-out-unified-3": (4085979253, 0.0822078298),
-    "hold-out-unified-4": (2541788910, 0.109416051),
-    "hold-out-curvature-meanline-3": (3841080054, 0.102052985),
-    "hold-out-curvature-meanline-4": (74332628, 0.0596423556),
-    "hold-out-suction-pressure-3": (841210703, 0.205462267),
-    "hold-out-suction-pressure-4": (983485425, 0.0243360769),
-    "hold-out-camber-angle-3": (2255218998, 0.525225536),
-    "hold-out-camber-angle-4": (2796777507, 0.195433592),
-    "hold-out-profile-3": (2706080686, 2.23833077),
-    "hold-out-profile-4": (3238675979, 0.0361043181),
-    "hold-out-wedge-diffuser-3": (4119323403, 0.38534164),
-    "hold-out-wedge-diffuser-4": (3847877969, 1.72198699),
+    "hold-out-unified-1": (1285485233, 0.919361374),
+    "hold-out-unified-2": (4002920486, 0.0112549252),
+    "hold-out-unified-3": (2937163497, 0.30786744),
+    "hold-out-unified-4": (3902819851, 0.0871542569),
+    "hold-out-unified-5": (620313500, 0.0317268907),
+    "hold-out-curvature-meanline-1": (2545704537, 0.0704266541),
+    "hold-out-curvature-meanline-2": (3864118302, 0.297531973),
+    "hold-out-curvature-meanline-3": (211648697, 1.03278128),
+    "hold-out-curvature-meanline-4": (2840349917, 0.13745402),
+    "hold-out-curvature-meanline-5": (2475367316, 0.0147096234),
+    "hold-out-suction-pressure-1": (3071737224, 0.522061677),
+    "hold-out-suction-pressure-2": (998250102, 0.929184551),
+    "hold-out-suction-pressure-3": (692330439, 0.521742202),
+    "hold-out-suction-pressure-4": (973487542, 0.0441543053),
+    "hold-out-suction-pressure-5": (3431449647, 0.018434125),
+    "hold-out-camber-angle-1": (1511275359, 0.775186751),
+    "hold-out-camber-angle-2": (3475293671, 0.550110338),
+    "hold-out-camber-angle-3": (760128618, 0.694424475),
+    "hold-out-camber-angle-4": (2633287946, 0.0747698094),
+    "hold-out-camber-angle-5": (982895947, 0.174374695),
+    "hold-out-profile-1": (1896460020, 0.0441141255),
+    "hold-out-profile-2": (2430975920, 0.395575008),
+    "hold-out-profile-3": (3849008928, 0.23775999),
+    "hold-out-profile-4": (474527266, 1.10054099),
+    "hold-out-profile-5": (3699223043, 0.0386925474),
+    "hold-out-wedge-diffuser-1": (1971132971, 0.220721196),
+    "hold-out-wedge-diffuser-2": (1321134409, 0.215402686),
+    "hold-out-wedge-diffuser-4": (2613506100, 0.331214517),
+    "hold-out-wedge-diffuser-5": (2701444372, 0.0200727197),
 }
 """seed by name, and the rms distance of its points from the origin [m]"""
 ALL = OPENED | SEEDS

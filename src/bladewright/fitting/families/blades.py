@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import groupby
+from itertools import chain, groupby
 from typing import Any
 
 import numpy as np
@@ -20,7 +20,7 @@ from bladewright.fitting.free_parameters import EDGES, FreeParameters, gauge_par
 from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.scales import check_bounds, part_range
-from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, evaluated, searched
+from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
 from bladewright.fitting.model_selection.reshaping import reshaped
 from bladewright.fitting.model_selection.selection import (
     GUESS_NOISE,
@@ -32,14 +32,18 @@ from bladewright.fitting.model_selection.selection import (
     selected_match,
 )
 from bladewright.fitting.model_selection.structure import INITIAL_BLADES, structure_of
-from bladewright.fitting.models.model import ModelShape
+from bladewright.fitting.models.model import ModelShape, model_of
 from bladewright.fitting.models.sectioned import infeasibility
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import Span, law_points
+from bladewright.section.unified_limits import RADII
 
 QUICK_ROUNDS = 4
 """rounds of the search for the closed blade from which the family's first design is taken"""
+SMALLER_RADII = (0.8, 0.4, 0.2)
+"""shares of its edge radii with which a closed blade is tried that cannot be built with all, one after the other: the
+wedge diffuser needs less than 0.7 (design/matching.md)"""
 WALLS_HELD_NOTE = "hub and shroud are held as they are given"
 """note where the flow path is given"""
 ROUNDNESS_PLACE, ROUNDER_RATIO = 0.04, 1.3
@@ -133,9 +137,21 @@ def _closed_blades(task: Task, header: DesignHeader, like: Any) -> Iterator[Mode
         points, structure=INITIAL_BLADES[-1], name=header.name, length_unit=header.length_unit, **row
     )
     few = replace(task.thinned(QUICK_POINTS), free=FreeParameters(), bounds={}, walls=task.walls or outline)
-    yield searched(few, first, noise=GUESS_NOISE, rounds=QUICK_ROUNDS).state.shape
+    found = searched(few, first, noise=GUESS_NOISE, rounds=QUICK_ROUNDS).design
+    radii = {path: value for path, value in found.parameters().items() if path.startswith(RADII)}
+    # searches hold edge radii at places along the span: between them they may be larger than the thickness holds
+    smaller = (found.changed({path: share * radii[path] for path in radii}) for share in SMALLER_RADII)
+    closed = next(filter(_can_be_built, chain([found], smaller)), found)
     # edges of the searched one may miss a wall
-    yield evaluated(few, first, noise=GUESS_NOISE).state.shape
+    yield from (model_of(each).shape(each) for each in (closed, first))
+
+
+def _can_be_built(design: Any) -> bool:
+    try:
+        design.build()
+    except DesignError:
+        return False
+    return True
 
 
 def _first_of(
