@@ -4,7 +4,8 @@
 
 Makes every cloud and compares it with the checksum that was written when the seeds were drawn (`secrets`, 24 November
 2026, the last 29 on the 27th). Nothing is matched here: `design/matching.py --holdout` does that once, when the work
-on matching is done. The first hundred and fifty and one of the last have been matched (group `opened`): work may look at them since.
+on matching is done. The first hundred and fifty and one of the last have been matched (group `opened`): work may look
+at them since.
 `--draw` draws others.
 """
 
