@@ -114,7 +114,6 @@ def test_what_a_flow_path_refuses_changes_as_central_differences_say(matched):
         found.append((ends[0] - ends[1]) / 2e-4)
     np.testing.assert_allclose(np.array(found) / scaled(exact), exact / scaled(exact), atol=3e-6)
     assert np.all(shape.constraints < 0.0)
-    # every one of these parameters moves what is refused, but for edges where the ends are matched and folds alone
     assert np.all(np.any(exact != 0.0, axis=1))
 
 

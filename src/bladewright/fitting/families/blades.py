@@ -20,7 +20,7 @@ from bladewright.fitting.free_parameters import EDGES, FreeParameters, gauge_par
 from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.scales import check_bounds, part_range
-from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
+from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, can_be_built, searched
 from bladewright.fitting.model_selection.reshaping import reshaped
 from bladewright.fitting.model_selection.selection import (
     GUESS_NOISE,
@@ -141,17 +141,9 @@ def _closed_blades(task: Task, header: DesignHeader, like: Any) -> Iterator[Mode
     radii = {path: value for path, value in found.parameters().items() if path.startswith(RADII)}
     # searches hold edge radii at places along the span: between them they may be larger than the thickness holds
     smaller = (found.changed({path: share * radii[path] for path in radii}) for share in SMALLER_RADII)
-    closed = next(filter(_can_be_built, chain([found], smaller)), found)
+    closed = next(filter(can_be_built, chain([found], smaller)), found)
     # edges of the searched one may miss a wall
     yield from (model_of(each).shape(each) for each in (closed, first))
-
-
-def _can_be_built(design: Any) -> bool:
-    try:
-        design.build()
-    except DesignError:
-        return False
-    return True
 
 
 def _first_of(

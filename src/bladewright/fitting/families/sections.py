@@ -17,7 +17,14 @@ from bladewright.fitting.families.unified import matched_unified
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.section import first_section
 from bladewright.fitting.matching.scales import check_bounds
-from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, has_systematic_misfit, searched
+from bladewright.fitting.matching.search import (
+    ROUGH_REDUCTION,
+    Match,
+    Task,
+    can_be_built,
+    has_systematic_misfit,
+    searched,
+)
 from bladewright.fitting.model_selection.selection import (
     NEAR,
     QUICK_POINTS,
@@ -97,7 +104,7 @@ def nearest(task: Task, designs: Sequence[Design], target: MatchTarget, like: An
         except (DesignError, FitError) as error:
             refusal = error
             continue
-        if can_be_built(fresh[0], TOLERANCES[-1]):
+        if can_be_built_within(fresh[0], TOLERANCES[-1]):
             found.append(fresh)
             if fresh[0].maximum < NEAR * fresh[0].model.chord:
                 break
@@ -179,7 +186,7 @@ def _outlined(task: Task, kind: FitFamily, start: Match, count: int, header: Des
         found = searched(task, first, min_reduction=ROUGH_REDUCTION, fading=True)
     except (DesignError, FitError):
         return None
-    return found if can_be_built(found, TOLERANCES[-1]) else None
+    return found if can_be_built_within(found, TOLERANCES[-1]) else None
 
 
 def _trailing_edge(design: Any) -> str:
@@ -219,20 +226,16 @@ def compared(task: Task, designs: Iterator[Design]) -> list[Match]:
     return sorted(found, key=lambda each: each.rms)
 
 
-def can_be_built(match: Match, tolerance: float) -> bool:
+def can_be_built_within(match: Match, tolerance: float) -> bool:
     """Whether the design can be built with a tolerance, that is, its sections do not cross themselves."""
     design: Any = match.design
-    try:
-        replace(design, tolerance=max(design.tolerance, tolerance)).build()
-    except DesignError:
-        return False
-    return True
+    return can_be_built(replace(design, tolerance=max(design.tolerance, tolerance)))
 
 
 def buildable_tolerance(match: Match) -> Match:
     """The match with the finest tolerance of its native sides with which it can be built: edges may turn fast."""
     for tolerance in TOLERANCES:
-        if can_be_built(match, tolerance):
+        if can_be_built_within(match, tolerance):
             design: Any = match.design
             return replace(match, design=replace(design, tolerance=max(design.tolerance, tolerance)))
     return match

@@ -6,6 +6,7 @@ search in exact data ends free of it. Knots, outliers and what lies at the ends 
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -203,15 +204,18 @@ def is_exact(match: Match) -> bool:
     return match.noise_estimate.noise < EXACT_NOISE * match.model.chord
 
 
+def can_be_built(design: Any) -> bool:
+    """Whether `build` does not refuse a design."""
+    try:
+        design.build()
+    except DesignError:
+        return False
+    return True
+
+
 def is_refused(match: Match) -> bool:
     """Whether a blade that searches allow is refused when it is built: its edge radii need a larger margin."""
-    if match.state.footpoints.points.shape[1] == 2:
-        return False
-    try:
-        match.design.build()
-    except DesignError:
-        return True
-    return False
+    return match.state.footpoints.points.shape[1] == 3 and not can_be_built(match.design)
 
 
 def searched(
