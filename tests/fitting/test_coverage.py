@@ -1,7 +1,5 @@
 """Edges around which a cloud has no points are said, and half a blade is known by them."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -10,8 +8,8 @@ from bladewright.fitting.assessment.estimates import parameter_estimates
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
-from bladewright.fitting.model_selection.reshaping import reshaped
-from bladewright.fitting.model_selection.structure import MOST_SPAN, rows_shown, structure_of
+from bladewright.fitting.model_selection.laws import MOST_SPAN
+from bladewright.fitting.model_selection.structure import reshaped, rows_shown, structure_of
 from machines import example
 
 DESIGNS = {name: example(name) for name in ("turbine-section", "aachen-stator")}
@@ -55,8 +53,7 @@ def test_half_a_blade_does_not_pass_and_is_called_so():
 @pytest.mark.parametrize(("rows", "said"), [(4, True), (12, False)])
 def test_a_blade_that_is_measured_in_fewer_sections_than_its_laws_have_points_is_not_known_between_them(rows, said):
     design, draw = DESIGNS["aachen-stator"], np.random.default_rng(0)
-    laws = structure_of(design)
-    design = reshaped(design, replace(laws, span={**laws.span, "stagger": 6}))
+    design = reshaped(design, structure_of(design).resized("stagger", (1, 6)))
     u = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 40))) / 2.0
     places = np.meshgrid(u, np.linspace(0.0, 1.0, rows))
     points = np.concatenate([np.real(side(*map(np.ravel, places))) for side in design.build().sides])

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from bladewright.fitting.initial_guess.section import first_section
+from bladewright.fitting.model_selection.structure import Structure
 from bladewright.nurbs.closest import closest_on_curve
 from bladewright.section.unified import UnifiedSection
 
@@ -71,7 +72,9 @@ def test_noise_outliers_and_duplicates_leave_a_first_section_close() -> None:
 
 
 def test_a_first_section_has_the_structure_that_was_asked_for() -> None:
-    found = first_section(_cloud(TRUTHS["turbine"], 300), chordwise=(4, 7), samples=12, clustering=0.5, length_unit="m")
+    counts = {"thickness_upper": (4, 1), "thickness_lower": (7, 1)}
+    asked = Structure(counts=counts, samples=12, clustering=0.5)
+    found = first_section(_cloud(TRUTHS["turbine"], 300), structure=asked, length_unit="m")
     assert (len(found.thickness_upper), len(found.thickness_lower)) == (4, 7)
     assert (found.samples, found.clustering, found.length_unit) == (12, 0.5, "m")
 

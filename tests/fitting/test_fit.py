@@ -1,5 +1,6 @@
 """From clouds to designs: what is found again, what is said of it, and what is refused."""
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -14,8 +15,8 @@ from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching import search
 from bladewright.fitting.matching.footpoints import nearest_footpoints
-from bladewright.fitting.model_selection.reshaping import reshaped
-from bladewright.fitting.model_selection.structure import Structure
+from bladewright.fitting.model_selection.structure import FIRST_SECTION, reshaped
+from bladewright.section.unified_limits import THICKNESSES
 from machines import COARSE, built, example
 from machines.unified_paths import INFLOW_IN_PATH
 
@@ -40,6 +41,11 @@ def truth(seed):
     }
     changes |= {f"{n}[{i}]": v * random.uniform(0.9, 1.1) for n in names for i, v in enumerate(getattr(BASE, n))}
     return BASE.changed(changes)
+
+
+def with_thicknesses(section, count):
+    """A section with so many control points of both thicknesses."""
+    return reshaped(section, replace(FIRST_SECTION, counts=dict.fromkeys(THICKNESSES, (count, 1))))
 
 
 def cloud(seed, count=1000, noise=0.0):
@@ -107,7 +113,7 @@ def distances(design, points):
 
 
 def test_a_wider_tolerance_is_reached_with_fewer_parameters():
-    points, start = cloud(2, 400), reshaped(truth(2), Structure(chordwise=(3, 3)))
+    points, start = cloud(2, 400), with_thicknesses(truth(2), 3)
     wide, tight = (fit(points, start, tolerance=tolerance) for tolerance in (4e-4, 2e-5))
     for found, tolerance in ((wide, 4e-4), (tight, 2e-5)):
         assert found.passed
@@ -117,7 +123,7 @@ def test_a_wider_tolerance_is_reached_with_fewer_parameters():
 
 
 def test_a_tolerance_below_the_noise_is_not_called_reached_and_the_noise_is_said():
-    found = fit(cloud(0, 300, 10.0 * NOISE), reshaped(truth(0), Structure(chordwise=(4, 4))), tolerance=NOISE)
+    found = fit(cloud(0, 300, 10.0 * NOISE), with_thicknesses(truth(0), 4), tolerance=NOISE)
     assert not found.passed
     assert any("noise" in each for each in found.notes)
     assert len(found.estimates) < 40

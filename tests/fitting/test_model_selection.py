@@ -10,9 +10,10 @@ from bladewright.fitting.assessment.acceptance import MatchTarget
 from bladewright.fitting.free_parameters import corner_radii, free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.model_selection.elimination import LinearModel, best_of_size, eliminated, reweighted
-from bladewright.fitting.model_selection.reshaping import reshaped, rich_structure, wider_structure
+from bladewright.fitting.model_selection.reshaping import rich_structure, wider_structure
 from bladewright.fitting.model_selection.selection import selected_match
-from bladewright.fitting.model_selection.structure import resizable_laws, structure_of
+from bladewright.fitting.model_selection.structure import reshaped, resizable_laws, structure_of
+from bladewright.section.unified_limits import THICKNESSES
 from machines import example
 from machines.stations import AXIAL
 
@@ -35,7 +36,7 @@ def task(noise=0.0):
 
 @cache
 def model(noise=1e-4):
-    start = reshaped(MADE, replace(structure_of(MADE), chordwise=(9, 8)))
+    start = reshaped(MADE, structure_of(MADE).resized("thickness_upper", (9, 1)).resized("thickness_lower", (8, 1)))
     return LinearModel(searched(task(noise), start, rounds=2), 16)
 
 
@@ -43,10 +44,11 @@ def model(noise=1e-4):
 def test_control_points_of_a_wider_law_are_the_embedding_of_those_of_a_narrower_one(design):
     wide = reshaped(design, wider_structure(design, design.parameters(), 10_000))
     for law in resizable_laws(wide):
-        narrow = law.resized(structure_of(wide), law.counts(structure_of(design)))
+        counts = structure_of(design).counts[law.name]
+        narrow = structure_of(wide).resized(law.name, counts)
         few, many = reshaped(wide, narrow), reshaped(reshaped(wide, narrow), structure_of(wide))
         few_values, many_values = ([each.parameters()[path] for path in law.paths(each)] for each in (few, many))
-        embedded = law.embedding(structure_of(wide), law.counts(narrow)) @ np.array(few_values)
+        embedded = law.embedding(law.counts_of(wide), counts) @ np.array(few_values)
         assert embedded == pytest.approx(np.array(many_values), rel=1e-9, abs=1e-9), law.name
 
 
@@ -55,9 +57,10 @@ def test_a_sampled_structure_needs_no_further_samples_and_loses_no_control_point
     design = replace(MADE, samples=samples)
     own = structure_of(design)
     found = rich_structure(design, design.parameters(), 10_000, sampled=True)
-    assert found.samples <= max(samples, max(own.chordwise) + 4)
-    assert all(few <= count for few, count in zip(own.chordwise, found.chordwise, strict=True))
-    assert max(found.chordwise) <= rich_structure(design, design.parameters(), 10_000).chordwise[0]
+    few, many = ([each.counts[name][0] for name in THICKNESSES] for each in (own, found))
+    assert found.samples <= max(samples, max(few) + 4)
+    assert np.all(np.array(few) <= many)
+    assert max(many) <= rich_structure(design, design.parameters(), 10_000).counts["thickness_upper"][0]
 
 
 def test_a_law_at_stations_keeps_them():
@@ -84,7 +87,7 @@ def test_a_prediction_is_the_least_squares_of_the_linear_problem():
     assert found.cost == pytest.approx(float(rest[0]), rel=1e-6)
     assert found.parameters == len(step) == linear.slopes.shape[1] - 6
     designed = linear.designed(found)
-    assert structure_of(designed).chordwise == (5, 6)
+    assert structure_of(designed).counts == {"thickness_upper": (5, 1), "thickness_lower": (6, 1)}
     # a narrower structure leaves no less
     assert linear.prediction(linear.counts).cost <= found.cost
 

@@ -18,8 +18,8 @@ from bladewright.fitting.free_parameters import EDGES, FreeParameters
 from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.model_selection import reshaping
 from bladewright.fitting.model_selection.elimination import LinearModel
-from bladewright.fitting.model_selection.reshaping import reshaped, rich_structure, richest
-from bladewright.fitting.model_selection.structure import resizable_laws, structure_of
+from bladewright.fitting.model_selection.reshaping import rich_structure
+from bladewright.fitting.model_selection.structure import reshaped, resizable_laws, richest, structure_of
 from bladewright.fitting.models.sectioned import PlanarModel, infeasibility
 from bladewright.section.camber_angle import CamberAngleSection
 from bladewright.section.laws import Span
@@ -47,8 +47,8 @@ def test_a_blade_with_more_control_points_along_the_span_is_the_same_blade(desig
     v, structure = np.linspace(0.0, 1.0, 5), structure_of(design)
     # the largest control point of a row that counts by ratios alone is held
     for law in (each for each in resizable_laws(design) if set(each.paths(design)) & set(FreeParameters()(design))):
-        *along, across = law.counts(structure)
-        wider = reshaped(design, law.resized(structure, (*along, across + 3)))
+        *along, across = structure.counts[law.name]
+        wider = reshaped(design, structure.resized(law.name, (*along, across + 3)))
         assert len(FreeParameters()(wider)) > len(FreeParameters()(design)), law.name
         # constants and laws of up to three control points are held by more; others come near
         assert outline(wider.section, v) == pytest.approx(outline(design.section, v), abs=1e-3), law.name
@@ -77,16 +77,16 @@ def test_walls_get_points_where_they_are_free_alone():
     own, free = structure_of(design), FreeParameters(walls=True)(design)
     for wall, points in (("hub", BENT), ("shroud", OUTER)):
         law = next(each for each in resizable_laws(design) if each.name == f"flow_path.{wall}")
-        assert law.counts(own) == (len(points),)
-        assert law.counts(rich_structure(design, FreeParameters()(design), 9000)) == (len(points),)
-        assert law.counts(rich_structure(design, free, 9000)) > (len(points),)
-        wider = reshaped(design, law.resized(own, (9,)))
+        assert own.counts[law.name] == (len(points),)
+        assert rich_structure(design, FreeParameters()(design), 9000).counts[law.name] == (len(points),)
+        assert rich_structure(design, free, 9000).counts[law.name] > (len(points),)
+        wider = reshaped(design, own.resized(law.name, (9,)))
         lines = [getattr(each.flow_path, wall).line(1.0).values(np.linspace(0.0, 1.0, 801)) for each in (design, wider)]
         assert np.max(cKDTree(lines[1]).query(lines[0])[0]) < 1e-3 * np.max(np.ptp(lines[0], axis=0))
         # the other way round, points of a wall are those of the narrower one that are nearest to its
         values = [np.array([each.parameters()[path] for path in law.paths(each)]) for each in (design, wider)]
         back = {each.name: each for each in resizable_laws(wider)}[law.name]
-        near = back.embedding(structure_of(wider), (len(points),)) @ values[0]
+        near = back.embedding(back.counts_of(wider), (len(points),)) @ values[0]
         assert near == pytest.approx(values[1], abs=0.02 * np.max(np.ptp(lines[0], axis=0)))
 
 
@@ -158,7 +158,7 @@ def test_a_side_with_more_heights_keeps_a_tangent_that_its_edge_needs():
     )
     design = section(blade)
     for law in resizable_laws(design):
-        richer = reshaped(design, law.resized(structure_of(design), (8, 1))).section
+        richer = reshaped(design, structure_of(design).resized(law.name, (8, 1))).section
         richer.outline(ALONE)
         assert richer.suction_tangent_out == blade.suction_tangent_out
         assert (richer.pressure_tangent_out < blade.pressure_tangent_out) == (law.name == "section.pressure_heights")

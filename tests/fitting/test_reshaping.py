@@ -1,13 +1,10 @@
 """The same shape with other numbers of control points, and the structures that ask for it."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 import bladewright as bw
-from bladewright.fitting.model_selection.reshaping import reshaped
-from bladewright.fitting.model_selection.structure import structure_of
+from bladewright.fitting.model_selection.structure import reshaped, resizable_laws, structure_of
 from bladewright.section.laws import law_basis
 from machines import example
 
@@ -22,13 +19,13 @@ def design(name):
     return found
 
 
-def wider(structure, chordwise=0):
-    """Every law with as many more control points as its basis holds exactly."""
-    more = {1: 2, 2: 3, 3: 4, 4: 5, 5: 7}
-    span = {name: more.get(count, count) for name, count in structure.span.items()}
-    channel = {name: more.get(count, count) for name, count in structure.channel.items()}
-    counts = tuple(more.get(count, count) if chordwise else count for count in structure.chordwise)
-    return replace(structure, span=span, channel=channel, chordwise=counts)
+def wider(design):
+    """The structure in which every law has as many more control points as its basis holds exactly."""
+    more, structure = {1: 2, 2: 3, 3: 4, 4: 5, 5: 7}, structure_of(design)
+    for law in resizable_laws(design):
+        counts = zip(law.counts_of(design), law.limits()[1], strict=True)
+        structure = structure.resized(law.name, tuple(min(more.get(count, count), most) for count, most in counts))
+    return structure
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -46,7 +43,7 @@ def test_with_its_own_structure_a_design_is_the_same(name):
 def test_more_control_points_whose_knots_hold_the_old_ones_leave_the_shape(name):
     before = design(name)
     # the channel of a blade keeps its degree where it has more control points than that
-    after = reshaped(before, wider(structure_of(before), chordwise=1))
+    after = reshaped(before, wider(before))
     assert len(after.parameters()) > len(before.parameters())
     old, new = before.build(), after.build()
     u, v = np.linspace(0.0, 1.0, 41), np.linspace(0.0, 1.0, 41)
@@ -63,7 +60,7 @@ def test_thicknesses_with_fewer_control_points_stay_positive():
     thin = design("turbine-section").changed(
         {f"thickness_upper[{i}]": value for i, value in enumerate((0.2, 1e-4, 1e-4, 1e-4, 0.3))}
     )
-    found = reshaped(thin, replace(structure_of(thin), chordwise=(4, 3)))
+    found = reshaped(thin, structure_of(thin).resized("thickness_upper", (4, 1)).resized("thickness_lower", (3, 1)))
     assert (len(found.thickness_upper), len(found.thickness_lower)) == (4, 3)
     assert min(*found.thickness_upper, *found.thickness_lower) > 0.0
     # the free least squares would not
@@ -74,7 +71,7 @@ def test_thicknesses_with_fewer_control_points_stay_positive():
 
 def test_laws_with_fewer_control_points_are_the_nearest():
     blade = design("compressor-stator")
-    flat = reshaped(blade, replace(structure_of(blade), span={**structure_of(blade).span, "stagger": 1}))
+    flat = reshaped(blade, structure_of(blade).resized("stagger", (1, 1)))
     # the mean of a parabola over the span
     assert flat.stagger == pytest.approx(np.mean(blade.stagger), rel=1e-2)
     assert flat.metal_angle_in == blade.metal_angle_in

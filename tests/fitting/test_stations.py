@@ -1,14 +1,11 @@
 """Matching keeps the stations of laws given by values: the values are the variables."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 import bladewright as bw
 from bladewright.fitting.families.laws import with_stations_of
-from bladewright.fitting.model_selection.reshaping import reshaped, richest
-from bladewright.fitting.model_selection.structure import structure_of
+from bladewright.fitting.model_selection.structure import reshaped, richest, structure_of
 from bladewright.section.laws import law_points, named_laws, stations_of
 from machines import built
 from machines.stations import AXIAL, SPAN, TABLE, at_stations, moved
@@ -35,7 +32,7 @@ def test_a_structure_keeps_stations():
     structure = structure_of(design)
     assert reshaped(design, structure) == design
     # with more control points of the thickness along the chord these are given at the same stations
-    wider = reshaped(design, replace(structure, chordwise=(5, 4)))
+    wider = reshaped(design, structure.resized("thickness_upper", (5, 1)).resized("thickness_lower", (4, 1)))
     assert [(law.span, law.interpolation) for law in wider.thickness_upper] == [(SPAN, "monotone")] * 5
 
 

@@ -58,6 +58,11 @@ def stations_of(law: Law) -> Stations | None:
     return law if isinstance(law, Stations) else None
 
 
+def plain_law(points: Reals) -> float | tuple[float, ...]:
+    """The law of real control points (n,): a number where there is one."""
+    return tuple(points.tolist()) if len(points) > 1 else float(points[0])
+
+
 def sampled_at(law: Law, stations: Stations) -> Stations:
     """A law of real numbers given by its own values at other stations, interpolated as theirs are."""
     return with_values(stations, np.real(Span(np.array(stations.span)).values(law)))

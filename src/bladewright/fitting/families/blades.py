@@ -21,7 +21,6 @@ from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.scales import check_bounds, part_range
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, can_be_built, searched
-from bladewright.fitting.model_selection.reshaping import reshaped
 from bladewright.fitting.model_selection.selection import (
     GUESS_NOISE,
     QUICK_POINTS,
@@ -31,7 +30,7 @@ from bladewright.fitting.model_selection.selection import (
     determined,
     selected_match,
 )
-from bladewright.fitting.model_selection.structure import INITIAL_BLADES, structure_of
+from bladewright.fitting.model_selection.structure import reshaped, structure_of
 from bladewright.fitting.models.model import ModelShape, model_of
 from bladewright.fitting.models.sectioned import infeasibility
 from bladewright.nurbs.basis import Reals
@@ -133,9 +132,7 @@ def _closed_blades(task: Task, header: DesignHeader, like: Any) -> Iterator[Mode
     Their sections and channels are all that is taken, so that they need not be fit to be built.
     """
     points, row = task.thinned(THOROUGH_POINTS).points, header.row(like)
-    first, outline = first_blade(
-        points, structure=INITIAL_BLADES[-1], name=header.name, length_unit=header.length_unit, **row
-    )
+    first, outline = first_blade(points, name=header.name, length_unit=header.length_unit, **row)
     few = replace(task.thinned(QUICK_POINTS), free=FreeParameters(), bounds={}, walls=task.walls or outline)
     found = searched(few, first, noise=GUESS_NOISE, rounds=QUICK_ROUNDS).design
     radii = {path: value for path, value in found.parameters().items() if path.startswith(RADII)}

@@ -15,9 +15,9 @@ from bladewright.fitting.initial_guess.blade import AXES_HINT, first_blade
 from bladewright.fitting.initial_guess.section import first_section
 from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import Match, Task, searched
-from bladewright.fitting.model_selection.reshaping import reshaped, with_feasible_edges
+from bladewright.fitting.model_selection.reshaping import with_feasible_edges
 from bladewright.fitting.model_selection.selection import FINAL_REDUCTION, THOROUGH_POINTS, selected_match
-from bladewright.fitting.model_selection.structure import INITIAL_BLADES, Structure, structure_of
+from bladewright.fitting.model_selection.structure import Structure, reshaped, structure_of
 
 
 def matched_unified(
@@ -35,9 +35,7 @@ def matched_unified(
         guessed = _first_section(task, wanted, header)
     else:
         points, row = task.thinned(THOROUGH_POINTS).points, header.row(like)
-        guessed, outline = first_blade(
-            points, structure=INITIAL_BLADES[-1], name=header.name, length_unit=header.length_unit, **row
-        )
+        guessed, outline = first_blade(points, name=header.name, length_unit=header.length_unit, **row)
         task = replace(task, outline=outline)
     first = _with_held_values(task, guessed, started=start is not None)
     check_bounds(first, task.free(first), task.bounds)
@@ -59,11 +57,9 @@ def _with_held_values(task: Task, guessed: Design, *, started: bool) -> Design:
 
 def _first_section(task: Task, structure: Structure | None, header: DesignHeader) -> Design:
     """The first section from the points alone."""
-    lengths: dict[str, Any] = {}
-    if structure is not None:
-        lengths = {name: getattr(structure, name) for name in ("chordwise", "samples", "clustering")}
     points = task.thinned(THOROUGH_POINTS).points
-    return first_section(points, name=header.name, length_unit=header.length_unit, **lengths)
+    asked = {} if structure is None else {"structure": structure}
+    return first_section(points, name=header.name, length_unit=header.length_unit, **asked)
 
 
 def _free_as(match: Match, _: Design) -> tuple[str, ...]:

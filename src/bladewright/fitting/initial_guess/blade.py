@@ -16,21 +16,19 @@ from bladewright.errors import BladewrightError, FitError
 from bladewright.fitting.clouds.thinning import even_subset, random_subset, without_isolated_points
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.channel import SlicedChannel, machine_coordinates, ranked_channels
-from bladewright.fitting.initial_guess.slices import PLACES, fitted_law, plain_law, unified_numbers
+from bladewright.fitting.initial_guess.slices import PLACES, fitted_law, unified_numbers
 from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.model_selection.reshaping import widened_where_feasible, with_feasible_edges
-from bladewright.fitting.model_selection.structure import INITIAL_BLADES, Structure
+from bladewright.fitting.model_selection.structure import FIRST_BLADE, Structure
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
+from bladewright.section.laws import plain_law
 
 AXES_HINT = "x must be the machine axis: say which column is which (--columns), or name the axis (--axis)"
 """what may be wrong with a cloud near which no blade is found"""
 DRAWN_POINTS, SEARCHED_POINTS = 1200, 500
 """points that show the slices, and points of the search (`SEARCHED_POINTS`); they bound the time
 (design/matching_constants.md)."""
-FEW = INITIAL_BLADES[-1]
-"""numbers of control points of the blade that is searched: with those of `INITIAL_BLADES[1]` a propeller, whose slices
-are within 2 deg of its metal angles, was searched away from these to 89 deg (design/matching.md)"""
 NOISE, ROUNDS = 0.03, 3
 """noise assumed of a first blade, of the chord, and rounds of its search (design/matching_constants.md)"""
 
@@ -68,7 +66,7 @@ def first_blade(
         except BladewrightError as error:
             refusal = refusal or error
             continue
-        first: Any = widened_where_feasible(found.design, structure or FEW)
+        first: Any = widened_where_feasible(found.design, structure or FIRST_BLADE)
         return first, sliced.walls
     raise FitError(f"no blade that can be built was found near the points ({refusal}); {AXES_HINT}")
 
@@ -84,10 +82,10 @@ def _blade_of(sliced: SlicedChannel, header: dict[str, Any]) -> UnifiedBlade:
         header = {**header, "blade_count": header["blade_count"] or int(np.clip(np.pi / max(wide, 1e-3), 1, 10_000))}
     else:
         place = place / metre
-    law = plain_law(fitted_law(place, slices.v, FEW.span["place"]))
+    law = plain_law(fitted_law(place, slices.v, FIRST_BLADE.counts["leading_edge_theta"][1]))
     # a meridional length at the places of the slices, in extents of the plane
     scale = lengths[:, None] / (channel.radius(PLACES, slices.v) * extents[:, None])
-    numbers = unified_numbers(slices, FEW.chordwise, FEW.span, scale)
+    numbers = unified_numbers(slices, FIRST_BLADE.counts, scale)
     numbers["leading_edge_theta" if channel.revolved else "leading_edge_y"] = law
     return UnifiedBlade(**header, **numbers, channel=channel.part(metre))
 

@@ -16,7 +16,7 @@ from bladewright.designs import Point
 from bladewright.fitting.free_parameters import EDGES
 from bladewright.fitting.initial_guess.meridional_outline import alpha_boundary, corner_sets
 from bladewright.fitting.initial_guess.slices import PlanePoints, Slices, chord_direction, slices_of
-from bladewright.fitting.model_selection.structure import INITIAL_BLADES
+from bladewright.fitting.model_selection.laws import CHANNEL_CURVES
 from bladewright.numerics.elementary import cross2, cumulative_length, length
 from bladewright.nurbs.basis import Reals, uniform_knots
 from bladewright.nurbs.fit import approximated
@@ -152,7 +152,7 @@ def _through(line: Reals, count: int, ends: Reals) -> Reals:
 
 STATIONS: Reals = np.linspace(0.0, 1.0, 9)
 """v of the slices"""
-CHANNEL = INITIAL_BLADES[1].channel
+CHANNEL = dict(zip(CHANNEL_CURVES, (3, 3, 4, 4), strict=True))
 """control points of the channel's curves"""
 LAW_COUNT = 4
 """control points of their laws along the span (design/first_guesses.md)"""

@@ -11,6 +11,7 @@ from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.slices import STEEPEST, PlanePoints, longest_chord, slices_of, unified_numbers
 from bladewright.fitting.matching.search import Match, Task, searched
 from bladewright.fitting.model_selection.reshaping import with_feasible_edges
+from bladewright.fitting.model_selection.structure import FIRST_SECTION, Structure
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.unified import UnifiedSection
@@ -29,16 +30,13 @@ NOISE, ROUNDS = 0.01, 5
 def first_section(
     points: Reals,
     *,
-    chordwise: tuple[int, int] = (6, 6),
-    samples: int = 16,
-    clustering: float = 1.0,
+    structure: Structure = FIRST_SECTION,
     name: str = "blade",
     length_unit: LengthUnit = "mm",
 ) -> UnifiedSection:
     """A section of the unified family near points (n, 2) [m], x axial and y tangential, found from them alone.
 
-    `chordwise` are the control points of the upper and the lower thickness. Raises FitError where no section that can
-    be built lies near the points.
+    Raises FitError where no section that can be built lies near the points.
     """
     points = without_isolated_points(np.unique(np.asarray(points, dtype=np.float64), axis=0))
     points = points[even_subset(points, DRAWN_POINTS)]
@@ -56,7 +54,7 @@ def first_section(
         if abs(direction) > STEEPEST:
             continue
         slices = slices_of(plane, np.array([direction]), np.zeros(1), 1)
-        numbers: dict[str, Any] = unified_numbers(slices, chordwise, {}, 1.0)
+        numbers: dict[str, Any] = unified_numbers(slices, structure.counts, 1.0)
         first = start + extent * slices.camber[0, 0]
         size = float(slices.camber[0, 3, 0] - slices.camber[0, 0, 0])
         try:
@@ -66,8 +64,8 @@ def first_section(
                 leading_edge_x=float(first[0]) / metre,
                 leading_edge_y=float(first[1]) / metre,
                 axial_chord=extent * size / metre,
-                samples=samples,
-                clustering=clustering,
+                samples=structure.samples,
+                clustering=structure.clustering,
                 **numbers,
             )
             found = searched(task, with_feasible_edges(guess), noise=NOISE, rounds=ROUNDS)

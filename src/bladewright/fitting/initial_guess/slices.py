@@ -19,7 +19,8 @@ from scipy.spatial import ConvexHull
 from bladewright.numerics.robust import TUKEY_WIDTH, median_deviation
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber import bernstein, camber_tangents
-from bladewright.section.laws import law_basis
+from bladewright.section.laws import law_basis, plain_law
+from bladewright.section.unified_limits import THICKNESSES
 
 TURNS = 12
 """times that points are assigned to the sides; most clouds settle in five (design/first_guesses.md)"""
@@ -232,10 +233,8 @@ THINNEST = 1e-3
 """smallest half thickness of a first blade, of the meridional length (design/matching_constants.md)"""
 
 
-def unified_numbers(
-    slices: Slices, chordwise: tuple[int, int], span: Mapping[str, int], scale: Reals | float
-) -> dict[str, Any]:
-    """Angles, tangents, radii and thicknesses of sections, as laws of `span` control points.
+def unified_numbers(slices: Slices, counts: Mapping[str, tuple[int, ...]], scale: Reals | float) -> dict[str, Any]:
+    """Angles, tangents, radii and thicknesses of sections, as laws of `counts` control points along chord and span.
 
     `scale` (m, k) is the meridional length, in extents of the plane, at PLACES of each section.
     """
@@ -255,11 +254,12 @@ def unified_numbers(
     }
     found: dict[str, Any] = {}
     for name, row in values.items():
-        law = np.clip(fitted_law(np.clip(row, *LIMITS[name]), v, span.get(name, 1)), *LIMITS[name])
+        law = np.clip(fitted_law(np.clip(row, *LIMITS[name]), v, counts.get(name, (1, 1))[1]), *LIMITS[name])
         found[name] = plain_law(np.degrees(law) if LIMITS[name][0] < 0.0 else law)
-    for name, count in zip(("thickness_upper", "thickness_lower"), chordwise, strict=True):
+    for name in THICKNESSES:
+        count, across = counts[name]
         along = np.linalg.lstsq(law_basis(count, PLACES), (slices.half / scale).T, rcond=None)[0]
-        laws = [np.maximum(fitted_law(row, v, span.get(name, 1)), THINNEST) for row in along]
+        laws = [np.maximum(fitted_law(row, v, across), THINNEST) for row in along]
         found[name] = tuple(plain_law(law) for law in laws)
     return found
 
@@ -267,8 +267,3 @@ def unified_numbers(
 def fitted_law(values: Reals, v: Reals, count: int) -> Reals:
     """Control points (count,) of the law nearest to values (m,) at v (m,)."""
     return np.asarray(np.linalg.lstsq(law_basis(count, v), values, rcond=None)[0])
-
-
-def plain_law(law: Reals) -> float | tuple[float, ...]:
-    """A law as designs hold it: a number, or control points."""
-    return tuple(law.tolist()) if len(law) > 1 else float(law[0])

@@ -17,8 +17,8 @@ from scipy.linalg import LinAlgError, cho_factor, cho_solve
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
-from bladewright.fitting.model_selection.reshaping import reshaped
-from bladewright.fitting.model_selection.structure import Counts, ResizableLaw, resizable_laws, structure_of
+from bladewright.fitting.model_selection.laws import Counts, ResizableLaw
+from bladewright.fitting.model_selection.structure import Structure, reshaped, resizable_laws, structure_of
 from bladewright.nurbs.basis import Reals
 
 LARGEST_STEP = 3
@@ -110,7 +110,7 @@ class LinearModel:
     @property
     def counts(self) -> tuple[Counts, ...]:
         """The numbers of control points of its own laws."""
-        return tuple(law.counts(self.structure) for law in self.laws)
+        return tuple(self.structure.counts[law.name] for law in self.laws)
 
     def weighted(self, weights: Reals) -> None:
         """Weigh the points by weights (n,)."""
@@ -159,13 +159,12 @@ class LinearModel:
             part, nearest, free, shift = self._law_subspace(i, counts)
             own = slice(first, first + part.shape[1])
             first = own.stop
-            structure = law.resized(self.structure, counts)
             values = nearest.copy()
             values[free] += np.linalg.lstsq(part, prediction.change[self._columns[i]] - shift, rcond=None)[0]
             for place, count in enumerate(counts):
                 for fewer in range(max(law.limits()[0][place], count - LARGEST_STEP), count):
                     smaller = (*counts[:place], fewer, *counts[place + 1 :])
-                    embedding = law.embedding(structure, smaller)
+                    embedding = law.embedding(counts, smaller)
                     lost = np.linalg.qr(embedding, mode="complete")[0][:, embedding.shape[1] :].T
                     if not len(lost):
                         # a row that is left out has no laws along the span to lose control points
@@ -193,7 +192,8 @@ class LinearModel:
         """A law's free parameters by those with other counts, the nearest of these, which are free, and the change."""
         key = law, counts
         if key not in self._known:
-            embedding, free = self.laws[law].embedding(self.structure, counts), self._free[law]
+            own = self.structure.counts[self.laws[law].name]
+            embedding, free = self.laws[law].embedding(own, counts), self._free[law]
             nearest = np.asarray(np.linalg.lstsq(embedding, self._values[law], rcond=None)[0], dtype=np.float64)
             kept = np.ones(embedding.shape[1], dtype=bool)
             kept[[int(np.argmax(row)) for row in embedding[~free]]] = False
@@ -201,11 +201,11 @@ class LinearModel:
             self._known[key] = embedding[np.ix_(free, kept)], nearest, kept, shift
         return self._known[key]
 
-    def structured(self, counts: Sequence[Counts]) -> Any:
+    def structured(self, counts: Sequence[Counts]) -> Structure:
         """The structure with these numbers of control points."""
         structure = self.structure
         for law, each in zip(self.laws, counts, strict=True):
-            structure = law.resized(structure, each)
+            structure = structure.resized(law.name, each)
         return structure
 
     def designed(self, prediction: Prediction) -> Any:

@@ -45,12 +45,11 @@ from bladewright.fitting.model_selection.elimination import (
     reweighted_prediction,
 )
 from bladewright.fitting.model_selection.reshaping import (
-    reshaped,
     rich_structure,
     widened_where_feasible,
     wider_structure,
 )
-from bladewright.fitting.model_selection.structure import Structure, rows_shown, structure_of
+from bladewright.fitting.model_selection.structure import Structure, reshaped, rows_shown, structure_of
 
 GUESS_NOISE = 3e-3
 """noise of the first round where the start is a guess, of the chord (design/matching_constants.md)."""
