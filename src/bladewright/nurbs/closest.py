@@ -252,6 +252,15 @@ class Descents:
         u, shape = u[best], ((u[best] < 0.0) & two).astype(np.intp)
         return Places(shape=shape, u=np.where(shape > 0, -u, u), v=v[best], square=square[best])
 
+    def globally_nearest(self, points: Reals) -> Places:
+        """The nearest places of points (n, d) by the global search: for few of them, as it takes longer."""
+        on = self.patches
+        found = nearest(on, points, TOLERANCE * max(_extent(each.control_points) for each in self.shapes))
+        low, high = on.low[found.patch], on.high[found.patch]
+        u, v = (low + found.local * (high - low)).T
+        shape = (u < 0.0).astype(np.intp) if len(self.shapes) > 1 else np.zeros(len(u), dtype=np.intp)
+        return Places(shape=shape, u=np.where(shape > 0, -u, u), v=v, square=found.square)
+
     def _descended(
         self, points: Reals, rows: NDArray[np.intp], patch: NDArray[np.intp], local: Reals, converged: float
     ) -> tuple[Reals, Reals, Reals]:

@@ -90,35 +90,37 @@ class _Search:
     on: Patches
     centres: Reals
     radii: Reals
-    forms: Reals
-    """(k, d + 2, 2p + 1, 2q + 1): N = forms . (1, x, |x|^2), x being the query relative to the centre; the last is D"""
     samples: cKDTree
     sample_patch: NDArray[np.intp]
     sample_local: Reals
 
     @classmethod
     def of(cls, on: Patches) -> "_Search":
-        points, weights = on.nets[..., :-1] / on.nets[..., -1:], on.nets[..., -1]
-        p, q = on.degrees
+        points, (p, q) = on.nets[..., :-1] / on.nets[..., -1:], on.degrees
         centres = 0.5 * (points.min(axis=(1, 2)) + points.max(axis=(1, 2)))
         radii = length(points - centres[:, None, None]).max(axis=(1, 2))
-        moved = weights[..., None] * (points - centres[:, None, None])
-        factors = np.concatenate([moved, weights[..., None]], axis=-1)
-        squares = products(factors, factors)
-        mixed = products(factors[..., :-1], weights[..., None])
-        forms = np.concatenate(
-            [squares[..., :-1].sum(axis=-1, keepdims=True), -2.0 * mixed, squares[..., -1:]], axis=-1
-        )
         starts = sampled(on, 2 * p + 2, 2 * q + 2)
         return cls(
             on=on,
             centres=centres,
             radii=radii,
-            forms=np.moveaxis(forms, -1, 1),
             samples=cKDTree(starts.points),
             sample_patch=starts.patch,
             sample_local=starts.local,
         )
+
+    def forms(self, patch: NDArray[np.intp]) -> Reals:
+        """Squared distances on patches (k,) as forms (k, d + 2, 2p + 1, 2q + 1) of queries.
+
+        N = forms . (1, x, |x|^2), x being the query relative to the centre; the last is D.
+        """
+        nets = self.on.nets[patch]
+        weights = nets[..., -1:]
+        moved = nets[..., :-1] - weights * self.centres[patch][:, None, None]
+        factors = np.concatenate([moved, weights], axis=-1)
+        squares, mixed = products(factors, factors), products(moved, weights)
+        found = [squares[..., :-1].sum(axis=-1, keepdims=True), -2.0 * mixed, squares[..., -1:]]
+        return np.moveaxis(np.concatenate(found, axis=-1), -1, 1)
 
     def nearest(self, queries: Reals, tolerance: float) -> PatchPoints:
         _, sample = self.samples.query(queries)
@@ -129,12 +131,14 @@ class _Search:
         # the margin covers the rounding of a difference of squares
         margin = 1e-7 * (self.radii + length(self.centres).max() + length(queries)[:, None])
         query, patch = np.nonzero(distance - self.radii < best_distance[:, None] + np.minimum(margin, self.radii))
-        coefficients = self.forms.shape[2] * self.forms.shape[3]
-        limit = max(1, BLOCK // coefficients)
+        near, place = np.unique(patch, return_inverse=True)
+        forms = self.forms(near)
+        limit = max(1, BLOCK // (forms.shape[2] * forms.shape[3]))
         waiting: list[_Boxes] = []
         done = 0
         for i in range(0, len(query), limit):
-            waiting.append(self._boxes(queries, query[i : i + limit], patch[i : i + limit]))
+            some = slice(i, i + limit)
+            waiting.append(self._boxes(queries, query[some], patch[some], forms[place[some]]))
             while waiting:
                 boxes = waiting.pop()
                 self._improve(best, queries, boxes)
@@ -142,15 +146,14 @@ class _Search:
                 coarser = max(1.0, done / (MANY_BOXES * len(queries))) ** 2
                 boxes = boxes.of(self._open(best, boxes, coarser * tolerance))
                 if len(boxes.query) and boxes.depth < MAX_HALVINGS:
-                    halves = boxes.halved(both=self.forms.shape[3] > 1)
+                    halves = boxes.halved(both=forms.shape[3] > 1)
                     rows = np.arange(len(halves.query))
                     waiting += [halves.of(rows[k : k + limit]) for k in range(0, len(rows), limit)]
         return best
 
-    def _boxes(self, queries: Reals, query: NDArray[np.intp], patch: NDArray[np.intp]) -> _Boxes:
+    def _boxes(self, queries: Reals, query: NDArray[np.intp], patch: NDArray[np.intp], chosen: Reals) -> _Boxes:
         x = queries[query] - self.centres[patch]
         form = np.concatenate([np.ones((len(x), 1)), x, np.sum(x * x, axis=1, keepdims=True)], axis=1)
-        chosen = self.forms[patch]
         return _Boxes(
             query=query,
             patch=patch,

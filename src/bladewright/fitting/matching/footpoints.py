@@ -17,9 +17,10 @@ Side = Curve | Surface
 EDGE_PARAMETERS, BETWEEN_EDGES = {"leading edge": 0.0, "trailing edge": 1.0}, 0.1
 """u of the two edges, and distance from them, in u, from which points lie between them (`BETWEEN_EDGES`)"""
 DEEP_SHARE, DEEP_EXTENT = 0.25, 1e-5
-"""a point inside the blade is projected onto the other side too where it lies deeper than this share of the thickness
-there (`DEEP_SHARE`), and deeper than this share of the cloud's extent (`DEEP_EXTENT`), which keeps noise out
-(design/matching_constants.md)."""
+"""a point inside the blade is looked for on both sides again, and without a hint by the global search, where it lies
+deeper than this share of the thickness there (`DEEP_SHARE`), and deeper than this share of the cloud's extent
+(`DEEP_EXTENT`), which keeps noise out: beside a thin edge a descent may end on its other side, and the point would
+be taken for an outlier (design/matching_constants.md)."""
 FACING = 0.999
 """cosine of the angle from which a normal faces a point: smooth sides do to rounding, and corners that turn by less
 than 3 deg leave a point a thousandth of its distance too near."""
@@ -69,8 +70,8 @@ def nearest_footpoints(
 ) -> Footpoints:
     """The nearest places of points (n, d) on the upper and the lower side, by descents (see `nurbs.closest`).
 
-    With a `hint`, footpoints on sides that have moved little since, they start there. `converged` is the last step in
-    the parameters of a patch.
+    With a `hint`, footpoints on sides that have moved little since, they start there; without one, places of points deep
+    inside are those of the global search. `converged` is the last step in the parameters of a patch.
     """
     search = Descents(tuple(sides))
     start = None if hint is None else Places(shape=hint.side, u=hint.u, v=hint.v)
@@ -79,8 +80,11 @@ def nearest_footpoints(
     rows = _deep_inside(footpoints, points, sides)
     if len(rows) == 0:
         return footpoints
-    opposite = Places(shape=1 - found.shape[rows], u=found.u[rows], v=found.v[rows])
-    other = search.nearest(points[rows], opposite, converged=converged)
+    if hint is None:
+        other = search.globally_nearest(points[rows])
+    else:
+        opposite = Places(shape=1 - found.shape[rows], u=found.u[rows], v=found.v[rows])
+        other = search.nearest(points[rows], opposite, converged=converged)
     nearer = other.square < found.square[rows]
     rows = rows[nearer]
     found.shape[rows], found.u[rows], found.v[rows] = other.shape[nearer], other.u[nearer], other.v[nearer]

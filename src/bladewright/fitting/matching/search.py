@@ -214,8 +214,8 @@ def can_be_built(design: Any) -> bool:
 
 
 def is_refused(match: Match) -> bool:
-    """Whether a blade that searches allow is refused when it is built: its edge radii need a larger margin."""
-    return match.state.footpoints.points.shape[1] == 3 and not can_be_built(match.design)
+    """Whether a design that searches allow is refused when it is built: its edge radii need a larger margin."""
+    return not can_be_built(match.design)
 
 
 def searched(
