@@ -18,7 +18,7 @@ from bladewright.fitting.families.section_shape import PLACES, SectionShape, sec
 from bladewright.fitting.families.sections import CONSIDERED, PROMISING, compared, criterion, is_far
 from bladewright.fitting.free_parameters import EDGES, FreeParameters, gauge_parameters
 from bladewright.fitting.initial_guess.blade import first_blade
-from bladewright.fitting.matching.footpoints import nearest_footpoints
+from bladewright.fitting.matching.footpoints import BETWEEN_EDGES, nearest_footpoints
 from bladewright.fitting.matching.scales import check_bounds, part_range
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, can_be_built, searched
 from bladewright.fitting.model_selection.selection import (
@@ -56,6 +56,10 @@ LAW_COUNT = 3
 """control points of each law along the span where no structure is given"""
 CONTOUR_POINTS = 32
 """points of contours along the chord where no profile is near enough (design/matching.md)"""
+ALIKE = 1.1
+"""ratio of the root mean squares of two kinds of section up to which the points beside the trailing edge tell them
+apart, as few points show an edge: of 20 drawn blades of the family camber-angle and the backswept impeller the kind of
+trailing edge is the true one of one more so (design/matching.md)"""
 CONFORMAL, UNROLLED = "m'-theta", "m-r*theta"
 """planes of stream surfaces in which sections are tried"""
 SAME_RADIUS = 1.02
@@ -364,9 +368,16 @@ def _matched(kind: FitFamily, shape: SectionShape, points: Reals, parts: Sequenc
         for part in parts
     )
     nearest = compared(task, designs)[:CONSIDERED]
-    return min(
-        (searched(task, each.design, rounds=QUICK_ROUNDS, fading=True) for each in nearest), key=lambda each: each.rms
-    )
+    found = [searched(task, each.design, rounds=QUICK_ROUNDS, fading=True) for each in nearest]
+    least = min(each.rms for each in found)
+    return min((each for each in found if each.rms <= ALIKE * least), key=_off_trailing_edge)
+
+
+def _off_trailing_edge(match: Match) -> float:
+    """Mean distance of points beside the trailing edge, outliers too: in these the kinds of a family differ."""
+    feet = match.state.footpoints
+    beside = feet.u > 1.0 - BETWEEN_EDGES
+    return float(np.mean(feet.distances[beside])) if np.any(beside) else np.inf
 
 
 def _section_parameters(design: Design) -> tuple[str, ...]:

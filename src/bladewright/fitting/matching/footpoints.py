@@ -70,8 +70,8 @@ def nearest_footpoints(
 ) -> Footpoints:
     """The nearest places of points (n, d) on the upper and the lower side, by descents (see `nurbs.closest`).
 
-    With a `hint`, footpoints on sides that have moved little since, they start there; without one, places of points deep
-    inside are those of the global search. `converged` is the last step in the parameters of a patch.
+    With a `hint`, footpoints on sides that have moved little since, they start there; without one, those of
+    points deep inside are found by the global search. `converged` is the last step in the parameters of a patch.
     """
     search = Descents(tuple(sides))
     start = None if hint is None else Places(shape=hint.side, u=hint.u, v=hint.v)
