@@ -24,6 +24,7 @@ from bladewright.fitting.models.sectioned import PlanarModel, infeasibility
 from bladewright.section.camber_angle import CamberAngleSection
 from bladewright.section.laws import Span
 from bladewright.section.suction_pressure.part import SuctionPressureSection
+from machines import example
 from machines.camber_angles import CAMBER_ANGLES
 from machines.meanlines import BLUNT, on_meanline
 from machines.sectioned import COMPRESSOR, DESIGNS, DIFFUSER
@@ -102,6 +103,22 @@ def test_a_section_with_more_control_points_along_the_chord_is_nearly_the_same(d
     fewest = [law.limits()[0] for law in model.laws]
     assert model.prediction(fewest).parameters < len(FreeParameters()(design))
     assert len(model.designed(model.prediction(fewest)).parameters()) <= len(design.parameters())
+
+
+def test_segments_with_more_control_points_that_hold_the_old_ones_are_the_same_segments():
+    design = example("morphing-airfoil").changed("section.morph", None)
+    wider = reshaped(design, richest(design))
+    for law in resizable_laws(design):
+        few, many = (np.array([each.parameters()[path] for path in law.paths(each)]) for each in (design, wider))
+        assert len(many) > len(few)
+        counts, own = law.counts_of(wider), law.counts_of(design)
+        # between the same ends control points are an affine function of fewer
+        found = law.embedding(counts, own) @ few + law.offset(design, counts, own)
+        assert found == pytest.approx(many, abs=1e-12), law.name
+    before, after = (np.real(each.section.outline(ALONE).points(PLACES)[0]) for each in (design, wider))
+    tree = cKDTree(np.real(wider.section.outline(ALONE).points(np.linspace(0.0, 1.0, 20_001))[0][0]))
+    assert before.shape == after.shape
+    assert np.max(tree.query(before[0])[0]) < 1e-4
 
 
 def task(design, count=150):

@@ -10,7 +10,7 @@ import numpy as np
 from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.designs import Design, unit_at
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.assessment.acceptance import SHARED_VARIANCE, MatchTarget
+from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, SHARED_VARIANCE, MatchTarget
 from bladewright.fitting.families.flow_path import ChannelCurves
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
 from bladewright.fitting.families.laws import counts_of, nearest_law, part_along_span, with_mean_laws, with_stations_of
@@ -91,7 +91,7 @@ def matched_blade(
     check_bounds(first, task.free(first), task.bounds)
     structure = None if like is None else structure_of(like)
     found, reason = selected_match(task, first, target, like=structure, guessed=start is None)
-    misfit = is_far(found, target) and found.noise_estimate.correlation > SHARED_VARIANCE
+    misfit = is_far(found, target, NEAR_EVERYWHERE) and found.noise_estimate.correlation > SHARED_VARIANCE
     if kind.through_points is not None and own and misfit and target.parameters is None:
         outlined = _through_points(task, kind, found, target)
         found, reason = min(filter(None, ((found, reason), outlined)), key=lambda each: criterion(each[0], target))

@@ -1,17 +1,21 @@
 """The laws of designs of one part, whose numbers of control points a match may choose: along the chord and the span."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import singledispatch
-from typing import Any
+from itertools import pairwise
+from typing import Any, ClassVar
 
 import numpy as np
 
 from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.blade.design.sectioned import SectionedBlade
+from bladewright.designs import Stations, value_at
 from bladewright.fitting.free_parameters import EDGES, WALLS, sliding_coordinate
 from bladewright.fitting.model_selection.laws import (
+    COMPARED_PLACES,
     FEWEST_ON_WALL,
     Chordwise,
+    Counts,
     CurvePoints,
     HeightsLaw,
     RatioLaw,
@@ -21,12 +25,15 @@ from bladewright.fitting.model_selection.laws import (
 )
 from bladewright.fitting.model_selection.structure import POSITIONS, sized_laws
 from bladewright.fitting.models.sectioned import SINGLE_SECTION
-from bladewright.numerics.elementary import cumulative_length
-from bladewright.nurbs.basis import Reals
+from bladewright.numerics.elementary import cumulative_length, length
+from bladewright.nurbs.basis import Reals, basis
 from bladewright.section.camber_angle import CamberAngle
 from bladewright.section.curvature_meanline import CurvatureMeanline
 from bladewright.section.laws import named_laws, stations_of
 from bladewright.section.planar import PlanarSection
+from bladewright.section.segmented.part import Segmented, side_joints
+from bladewright.section.segmented.segment import DEGREE, control_points, segment_knots
+from bladewright.section.segmented.skin import SEGMENTS
 from bladewright.section.suction_pressure.part import SuctionPressure
 
 RICH_CHORDWISE = {2: 12, 3: 8}
@@ -35,6 +42,8 @@ RICH_SPAN = 5
 """control points of a law along the span in a rich structure."""
 RICH_CURVE = 8
 """points on an edge curve or a wall of a rich structure: as many as on a channel's edges"""
+RICH_SEGMENT = 5
+"""inner control points of a segment in a rich structure, of a section that stands alone: they hold segments of one"""
 MOST = 24
 """control points of a law along the chord at most; it bounds the time: half and twice change nothing
 (design/matching_constants.md)."""
@@ -80,6 +89,67 @@ def _(part: SuctionPressure) -> dict[str, Chordwise]:
     }
 
 
+@dataclass(frozen=True, eq=False)
+class SegmentPoints(ResizableLaw):
+    """The inner control points of a segment of an airfoil that stands alone, between ends that its joints give."""
+
+    sign: float
+    """1 on the upper side, -1 on the lower one"""
+    held: Counts
+    """control points that its joints give at its ends"""
+    along_span: ClassVar[tuple[int, ...]] = ()
+
+    def counts_of(self, design: Any) -> Counts:
+        return (len(value_at(design, self.name).abscissas),)
+
+    def limits(self) -> tuple[Counts, Counts]:
+        return (max(1, DEGREE + 1 - sum(self.held)),), (MOST,)
+
+    def paths(self, design: Any) -> list[str]:
+        inner = range(*self.counts_of(design))
+        return [f"{self.name}.{axis}[{i}]" for i in inner for axis in ("abscissas", "ordinates")]
+
+    def _basis(self, count: int) -> tuple[Reals, slice]:
+        """Values (m, n) of the basis functions of all control points, and which of these are so many inner ones."""
+        rows = basis(segment_knots(count + sum(self.held)), DEGREE, COMPARED_PLACES)
+        return rows, slice(self.held[0], self.held[0] + count)
+
+    def embedding(self, counts: Counts, other: Counts) -> Reals:
+        (own, inner), (known, others) = self._basis(*counts), self._basis(*other)
+        return np.asarray(np.kron(np.linalg.lstsq(own[:, inner], known[:, others], rcond=None)[0], np.eye(2)))
+
+    def offset(self, design: Any, counts: Counts, other: Counts) -> Reals:
+        number, segment = SEGMENTS.index(self.name.rpartition(".")[2]), value_at(design, self.name)
+        joints = side_joints(design.section, self.sign, SINGLE_SECTION)[number : number + 2]
+        distance = length(joints[1].point - joints[0].point)
+        scales = (np.array([each or 1.0]) for each in (segment.front_scale, segment.rear_scale))
+        first, last = (joint.end(distance, scale) for joint, scale in zip(joints, scales, strict=True))
+        ends = [control_points(first, np.zeros((1, *each, 2)), last)[0] for each in (counts, other)]
+        (own, inner), (known, _) = self._basis(*counts), self._basis(*other)
+        return np.linalg.lstsq(own[:, inner], known @ ends[1] - own @ ends[0], rcond=None)[0].ravel()
+
+    def resized(self, design: Any, counts: Counts, stations: Stations | None) -> Any:  # noqa: ARG002 - the contract's
+        segment, own = value_at(design, self.name), self.counts_of(design)
+        if counts == own:
+            return segment
+        values = np.array([segment.abscissas, segment.ordinates]).T.ravel()
+        points = (self.embedding(counts, own) @ values + self.offset(design, counts, own)).reshape(-1, 2)
+        return replace(segment, abscissas=tuple(points[:, 0].tolist()), ordinates=tuple(points[:, 1].tolist()))
+
+
+def _segments(part: Any) -> list[ResizableLaw]:
+    """The inner control points of the segments of an airfoil, but for those whose skin morphs."""
+    found: list[ResizableLaw] = []
+    for sign, side in ((1.0, "upper"), (-1.0, "lower")):
+        given = getattr(part, side)
+        joints = [0 if part.nose is None else part.nose.continuity, given.front_joint.continuity]
+        joints += [given.rear_joint.continuity, 0]
+        for name, (front, rear) in zip(SEGMENTS, pairwise(joints), strict=True):
+            if getattr(given, name).skin is None:
+                found.append(SegmentPoints(f"section.{side}.{name}", (RICH_SEGMENT,), sign, (1 + front, 1 + rear)))
+    return found
+
+
 def _laws_of_part(part: Any, *, spanwise: bool) -> list[ResizableLaw]:
     """Those of a part, rows first; of a section the rows alone, as it has no span. Those at stations stay."""
     stationary = {path.partition("[")[0] for path, law in named_laws(part) if stations_of(law) is not None}
@@ -97,7 +167,8 @@ def _laws_of_part(part: Any, *, spanwise: bool) -> list[ResizableLaw]:
 
 @sized_laws.register
 def _(design: PlanarSection) -> list[ResizableLaw]:
-    return _laws_of_part(design.section, spanwise=False)
+    segments = _segments(design.section) if isinstance(design.section, Segmented) else []
+    return [*_laws_of_part(design.section, spanwise=False), *segments]
 
 
 @sized_laws.register

@@ -10,7 +10,7 @@ from scipy.special import chdtri
 
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, MatchTarget
+from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, MatchTarget, trusted_distance
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
 from bladewright.fitting.families.section_shape import SectionShape, section_shape
 from bladewright.fitting.families.unified import matched_unified
@@ -23,6 +23,7 @@ from bladewright.fitting.matching.search import (
     Task,
     can_be_built,
     has_systematic_misfit,
+    is_exact,
     searched,
 )
 from bladewright.fitting.model_selection.selection import (
@@ -46,8 +47,8 @@ change nothing measured (design/matching_constants.md)"""
 OUTLINE_COUNTS = (24, 32, 44)
 """numbers of points of contours that are tried in turn: searches of more end further off (design/matching.md)"""
 OUTLINE_DEVIATION = 1e-4
-"""largest distance with which a contour gets no further points where nothing is asked for, of the chord: a fifth of
-what acceptance trusts"""
+"""largest distance with which a contour gets no further points where nothing is asked for, and with which exact points
+need no contour, of the chord: a fifth of what acceptance trusts"""
 BESIDE, BY_CHANCE = 16, 1e-3
 """points beside each other by which a misfit is told that stays with an edge, which seldom has more, and probability
 that noise alone looks like one (`BY_CHANCE`), by the chi-squared test (Pearson 1900) [-]"""
@@ -113,18 +114,21 @@ def nearest(task: Task, designs: Sequence[Design], target: MatchTarget, like: An
     return min(found, key=lambda each: criterion(each[0], target))
 
 
-def criterion(match: Match, target: MatchTarget) -> tuple[bool, float]:
+def criterion(match: Match, target: MatchTarget) -> tuple[bool, bool, float]:
     """What the best of several matches has least of: parameters where a tolerance is kept, else Schwarz's criterion.
 
-    A match that has no misfit beyond the noise anywhere comes before one that has: few points show an edge. Reference:
-    Schwarz 1978, Estimating the dimension of a model.
+    A match that has no misfit beyond the noise anywhere comes before one that has, as few points show an edge, and of
+    two that have one the match that is nowhere farther than is trusted. Reference: Schwarz 1978, Estimating the
+    dimension of a model.
     """
     count, points = len(match.problem.paths), np.count_nonzero(match.rows)
     if target.tolerance is not None and match.maximum <= target.tolerance:
-        return False, float(count) - 1.0 / EXACT**2
+        return False, False, float(count) - 1.0 / EXACT**2
     if target.parameters is not None and count > target.parameters:
-        return True, np.inf
-    return _has_misfit(match), float(points * np.log(max(match.rms, EXACT) ** 2) + count * np.log(points))
+        return True, True, np.inf
+    misfit = _has_misfit(match)
+    schwarz = float(points * np.log(max(match.rms, EXACT) ** 2) + count * np.log(points))
+    return misfit and match.maximum > trusted_distance(match), misfit, schwarz
 
 
 def _worst_neighbourhood(match: Match) -> float:
@@ -143,9 +147,13 @@ def _has_misfit(match: Match) -> bool:
     return has_systematic_misfit(match) or _worst_neighbourhood(match) > allowed * match.noise_estimate.noise**2
 
 
-def is_far(match: Match, target: MatchTarget, open_limit: float = NEAR_EVERYWHERE) -> bool:
-    """Whether a match is not what is asked for; `open_limit` is the largest distance where nothing is, of the chord."""
-    limit = open_limit * match.model.chord if target.tolerance is None else target.tolerance
+def is_far(match: Match, target: MatchTarget, open_limit: float | None = None) -> bool:
+    """Whether a match is not what is asked for; `open_limit` is the largest distance where nothing is, of the chord.
+
+    Without it exact points are met more nearly than others.
+    """
+    share = open_limit or (OUTLINE_DEVIATION if is_exact(match) else NEAR_EVERYWHERE)
+    limit = share * match.model.chord if target.tolerance is None else target.tolerance
     short = target.parameters is not None and len(match.problem.paths) < target.parameters
     return (short or (target.parameters is None and match.maximum > limit)) and _has_misfit(match)
 

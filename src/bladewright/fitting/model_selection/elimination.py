@@ -89,6 +89,7 @@ class LinearModel:
         self.laws: list[ResizableLaw] = []
         self._columns: list[NDArray[np.intp]] = []
         self._free: list[NDArray[np.bool_]] = []
+        self._size: list[float] = []
         self._values: list[Reals] = []
         for law in resizable_laws(match.design):
             own = law.paths(match.design)
@@ -102,7 +103,8 @@ class LinearModel:
             self.laws.append(law)
             self._columns.append(columns)
             self._free.append(free)
-            self._values.append(np.array([float(values[path]) for path in own]) / size[columns[0]])
+            self._size.append(float(size[columns[0]]))
+            self._values.append(np.array([float(values[path]) for path in own]) / self._size[-1])
         taken = np.concatenate(self._columns) if self._columns else np.empty(0, dtype=np.intp)
         self._others = np.setdiff1d(np.arange(len(paths)), taken)
         self._known: dict[tuple[int, Counts], tuple[Reals, Reals, NDArray[np.bool_], Reals]] = {}
@@ -169,7 +171,11 @@ class LinearModel:
                     if not len(lost):
                         # a row that is left out has no laws along the span to lose control points
                         continue
-                    bent, spread = lost @ values, lost[:, free] @ prediction.inverse[own, own] @ lost[:, free].T
+                    offset = law.offset(self.design, counts, smaller) / self._size[i]
+                    bent, spread = (
+                        lost @ (values - offset),
+                        lost[:, free] @ prediction.inverse[own, own] @ lost[:, free].T,
+                    )
                     loss = float(bent @ np.linalg.lstsq(spread, bent, rcond=None)[0])
                     found.append((loss / len(lost), len(lost), i, smaller))
         return sorted(found)
@@ -194,10 +200,11 @@ class LinearModel:
         if key not in self._known:
             own = self.structure.counts[self.laws[law].name]
             embedding, free = self.laws[law].embedding(own, counts), self._free[law]
-            nearest = np.asarray(np.linalg.lstsq(embedding, self._values[law], rcond=None)[0], dtype=np.float64)
+            offset = self.laws[law].offset(self.design, own, counts) / self._size[law]
+            nearest = np.asarray(np.linalg.lstsq(embedding, self._values[law] - offset, rcond=None)[0])
             kept = np.ones(embedding.shape[1], dtype=bool)
             kept[[int(np.argmax(row)) for row in embedding[~free]]] = False
-            shift = (embedding @ nearest - self._values[law])[free]
+            shift = (embedding @ nearest + offset - self._values[law])[free]
             self._known[key] = embedding[np.ix_(free, kept)], nearest, kept, shift
         return self._known[key]
 

@@ -68,6 +68,10 @@ class ResizableLaw(ABC):
     def embedding(self, counts: Counts, other: Counts) -> Reals:
         """Its numbers (k, j) with some counts that are nearest to those of the law with others."""
 
+    def offset(self, design: Any, counts: Counts, other: Counts) -> Reals:  # noqa: ARG002 - the contract's
+        """What is added (k,) to the embedding of numbers with other counts: ends that no number of the law moves."""
+        return np.zeros(1)
+
     @abstractmethod
     def resized(self, design: Any, counts: Counts, stations: Stations | None) -> Any:
         """The value of its field with other counts, or at stations along the span, that is nearest to a design's."""
