@@ -18,7 +18,7 @@ from bladewright.fitting.families.section_shape import PLACES, SectionShape, sec
 from bladewright.fitting.families.sections import CONSIDERED, PROMISING, compared, criterion, is_far
 from bladewright.fitting.free_parameters import EDGES, FreeParameters, gauge_parameters
 from bladewright.fitting.initial_guess.blade import first_blade
-from bladewright.fitting.matching.footpoints import BETWEEN_EDGES, nearest_footpoints
+from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.scales import check_bounds, part_range
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, can_be_built, searched
 from bladewright.fitting.model_selection.selection import (
@@ -57,9 +57,8 @@ LAW_COUNT = 3
 CONTOUR_POINTS = 32
 """points of contours along the chord where no profile is near enough (design/matching.md)"""
 ALIKE = 1.1
-"""ratio of the root mean squares of two kinds of section up to which the points beside the trailing edge tell them
-apart, as few points show an edge: of 20 drawn blades of the family camber-angle and the backswept impeller the kind of
-trailing edge is the true one of one more so (design/matching.md)"""
+"""ratio of the misfits of two kinds of section in the middle, such as with a round and with a blunt edge, up to which
+short searches of whole blades tell them apart: the closed blade has round edges (design/matching.md)"""
 CONFORMAL, UNROLLED = "m'-theta", "m-r*theta"
 """planes of stream surfaces in which sections are tried"""
 SAME_RADIUS = 1.02
@@ -192,8 +191,8 @@ class _Frame:
 def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: DesignHeader) -> tuple[float, Design]:
     """The blade of the family nearest to the points whose sections are those of a closed blade; the turn of its frame.
 
-    Planes that the sections in the middle hardly tell apart are told apart by a short search of whole blades, of each
-    plane with theta counted from where these meet it best.
+    Planes and kinds of section that those in the middle hardly tell apart are told apart by a short search of whole
+    blades, of each plane with theta counted from where these meet it best.
     """
     found = ChannelCurves(exact=closed.exact)
     built = [closed.exact.section(float(v)) for v in START_SPANS]
@@ -208,8 +207,9 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
         if found.backwards:
             shapes, beside = [each.reversed() for each in shapes[::-1]], beside * [-1.0, 1.0]
         try:
-            match = _matched(kind, shapes[MIDDLE], beside, kind.first_parts(shapes[MIDDLE], part))
-            tried.append((match, _Frame(plane=plane, turn=turn, shapes=shapes)))
+            matches = _matched(kind, shapes[MIDDLE], beside, kind.first_parts(shapes[MIDDLE], part))
+            frame = _Frame(plane=plane, turn=turn, shapes=shapes)
+            tried += [(match, frame) for match in matches]
         except FitError as error:
             refusal = error
     tried.sort(key=lambda each: each[0].rms)
@@ -217,7 +217,7 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
     for chosen, frame in tried:
         if chosen.rms > PROMISING * tried[0][0].rms:
             break
-        if any(frame.plane == each.plane for _, each in blades):
+        if any(frame.plane == each.plane and frame is not each for _, each in blades):
             continue
         parts = _along_span(kind, frame.shapes, chosen)
         counts = dict.fromkeys(counts_of(parts[MIDDLE]), LAW_COUNT) if like is None else counts_of(like.section)
@@ -357,8 +357,8 @@ def _along_span(kind: FitFamily, shapes: Sequence[SectionShape], middle: Match) 
     ]
 
 
-def _matched(kind: FitFamily, shape: SectionShape, points: Reals, parts: Sequence[Any]) -> Match:
-    """The best match of points (n, 2) of a section from several parts."""
+def _matched(kind: FitFamily, shape: SectionShape, points: Reals, parts: Sequence[Any]) -> list[Match]:
+    """The best match of points (n, 2) of a section from several parts, and those that are hardly worse."""
     task = Task(points=points, weights=np.ones(len(points)), free=_section_parameters, bounds={})
     x, y = shape.start
     designs = (
@@ -369,15 +369,8 @@ def _matched(kind: FitFamily, shape: SectionShape, points: Reals, parts: Sequenc
     )
     nearest = compared(task, designs)[:CONSIDERED]
     found = [searched(task, each.design, rounds=QUICK_ROUNDS, fading=True) for each in nearest]
-    least = min(each.rms for each in found)
-    return min((each for each in found if each.rms <= ALIKE * least), key=_off_trailing_edge)
-
-
-def _off_trailing_edge(match: Match) -> float:
-    """Mean distance of points beside the trailing edge, outliers too: in these the kinds of a family differ."""
-    feet = match.state.footpoints
-    beside = feet.u > 1.0 - BETWEEN_EDGES
-    return float(np.mean(feet.distances[beside])) if np.any(beside) else np.inf
+    found.sort(key=lambda each: each.rms)
+    return [each for each in found if each.rms <= ALIKE * found[0].rms]
 
 
 def _section_parameters(design: Design) -> tuple[str, ...]:

@@ -233,6 +233,7 @@ class _Selection:
                 widened = first if found is match else partial(wider_structure, slim=slim)
                 design = widened_where_feasible(about, widened(about, self.task.free(about), *shown))
                 richer = search(self.task, design, noise=found.rms, enough=lambda each: each.maximum <= least)
+                richer = without_false_outliers(self.task, richer)
             except (DesignError, FitError):
                 break
             before, found = found, richer if found is match or richer.rms < found.rms else found
