@@ -1,14 +1,14 @@
 """From points in space to a blade from sections of a family."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from itertools import chain, groupby
 from typing import Any
 
 import numpy as np
 
 from bladewright.blade.design.sectioned import SectionedBlade
-from bladewright.designs import Design, unit_at
+from bladewright.designs import Design, Part, unit_at
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, SHARED_VARIANCE, MatchTarget
 from bladewright.fitting.families.flow_path import ChannelCurves
@@ -58,7 +58,8 @@ CONTOUR_POINTS = 32
 """points of contours along the chord where no profile is near enough (design/matching.md)"""
 ALIKE = 1.1
 """ratio of the misfits of two kinds of section in the middle, such as with a round and with a blunt edge, up to which
-short searches of whole blades tell them apart: the closed blade has round edges (design/matching.md)"""
+short searches of whole blades tell them apart, where these differ by more: the closed blade has round edges. Whole
+blades of an inflow nozzle differ by 2 %, of the backswept impeller by 88 % (design/matching.md)"""
 CONFORMAL, UNROLLED = "m'-theta", "m-r*theta"
 """planes of stream surfaces in which sections are tried"""
 SAME_RADIUS = 1.02
@@ -228,7 +229,7 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
             refusal = error
     if not blades:
         raise refusal
-    best, frame = min(blades, key=lambda each: each[0].rms)
+    best, frame = _alike(blades, lambda each: each[0].rms)[0]
     nearest: Any = best.design
     if not frame.turn:
         return 0.0, nearest
@@ -369,8 +370,25 @@ def _matched(kind: FitFamily, shape: SectionShape, points: Reals, parts: Sequenc
     )
     nearest = compared(task, designs)[:CONSIDERED]
     found = [searched(task, each.design, rounds=QUICK_ROUNDS, fading=True) for each in nearest]
-    found.sort(key=lambda each: each.rms)
-    return [each for each in found if each.rms <= ALIKE * found[0].rms]
+    kinds = dict[Any, Match]()
+    for each in sorted(found, key=lambda match: match.rms):
+        design: Any = each.design
+        kinds.setdefault(_kind_of(design.section), each)
+    return _alike(list(kinds.values()), lambda match: match.rms)
+
+
+def _kind_of(part: Part) -> tuple[Any, ...]:
+    """What a part is besides its numbers: its class and its words, and those of the parts in it."""
+    values = (getattr(part, each.name) for each in fields(part))
+    return type(part), *(
+        _kind_of(each) if isinstance(each, Part) else each for each in values if isinstance(each, str | Part)
+    )
+
+
+def _alike(found: list[Any], misfit: Callable[[Any], float]) -> list[Any]:
+    """Those that are hardly worse than the best, in their order."""
+    least = min(misfit(each) for each in found)
+    return [each for each in found if misfit(each) <= ALIKE * least]
 
 
 def _section_parameters(design: Design) -> tuple[str, ...]:
