@@ -11,6 +11,8 @@ from scipy.spatial import cKDTree
 from bladewright.errors import FitError
 from bladewright.fitting import free_parameters
 from bladewright.fitting.families import blades
+from bladewright.fitting.families.blades import _alike, _kind_of
+from bladewright.fitting.families.first_parts import CAMBER_ANGLES
 from bladewright.fitting.families.flow_path import ChannelCurves
 from bladewright.fitting.families.kinds import FAMILIES
 from bladewright.fitting.families.laws import counts_of, part_along_span, with_mean_laws
@@ -201,3 +203,12 @@ def test_contours_of_a_profile_that_tapers_keep_its_kind_of_edge_and_its_shape()
         assert max(off) < 5e-3
     # one coordinate of each point slides it along the contour, and both of the two ends
     assert len(free_parameters._along_contour(contours)) == blades.LAW_COUNT * (blades.CONTOUR_POINTS + 2)
+
+
+def test_kinds_of_section_that_are_alike_are_kept_in_their_order_and_differ_by_words_alone():
+    assert _alike([1.05, 1.0, 1.2], lambda misfit: misfit) == [1.05, 1.0]
+    section = VANE.section
+    moved = section.changed({path: 0.999 * value for path, value in section.parameters().items()})
+    assert _kind_of(moved) == _kind_of(section)
+    kinds = {_kind_of(replace(CAMBER_ANGLES[0], trailing_edge=edge)) for edge in ("round", "blunt", "sharp")}
+    assert len(kinds) == 3
