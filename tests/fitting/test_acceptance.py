@@ -53,8 +53,8 @@ def test_deviations_that_are_the_clouds_own_noise_do_not_make_a_match_coarse(noi
     assert any("not found" in each for each in found) is not passed
 
 
-@pytest.mark.parametrize("together", [True, False])
-def test_outliers_beside_each_other_are_a_shape_that_is_not_found(together):
+@pytest.mark.parametrize(("together", "off", "said"), [(True, 1e-3, True), (True, 4e-4, False), (False, 1e-3, False)])
+def test_outliers_beside_each_other_are_a_shape_that_is_not_found_unless_they_are_near(together, off, said):
     built, draw = STATOR.build(), np.random.default_rng(8)
     u, v = draw.random((2, 1500))
     points = np.concatenate([np.real(side(u, v)) for side in built.sides])
@@ -63,9 +63,11 @@ def test_outliers_beside_each_other_are_a_shape_that_is_not_found(together):
     left_out = np.argsort(np.concatenate([u, 2.0 + u]))[:number] if together else draw.permutation(len(points))[:number]
     inliers = np.ones(len(points), dtype=bool)
     inliers[left_out] = False
-    measurement = replace(measurement, noise_estimate=replace(measurement.noise_estimate, inliers=inliers))
-    said = failures_of(measurement, parameter_estimates(found), found, MatchTarget(structured=True))
-    assert any("beside each other" in each for each in said) is together
+    deviations = np.where(inliers, measurement.deviations, off * built.chord)
+    noise_estimate = replace(measurement.noise_estimate, inliers=inliers)
+    measurement = replace(measurement, noise_estimate=noise_estimate, deviations=deviations)
+    failures = failures_of(measurement, parameter_estimates(found), found, MatchTarget(structured=True))
+    assert any("beside each other" in each for each in failures) is said
 
 
 @pytest.mark.parametrize("inside", [True, False])

@@ -192,7 +192,7 @@ def test_the_best_design_is_kept_where_the_interruption_falls_between_two_search
     def interrupted(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("bladewright.fitting.model_selection.selection.eliminated", interrupted)
+    monkeypatch.setattr("bladewright.fitting.model_selection.structure_search.eliminated", interrupted)
     # more points are measured by some of them, and the report says so
     monkeypatch.setattr(f"{fit.__module__}.MOST_POINTS", 300)
     found = fit(cloud(0, 400))

@@ -91,6 +91,8 @@ def failures_of(
     failures = ["the search was interrupted: this is the best design so far"] if match.interrupted else []
     if off > LARGEST_OUTLIER_SHARE * len(distances):
         failures.append(f"{off} of {len(distances)} points lie off the blade: is it one blade, and of this family?")
+    # points that are met as nearly as is asked are no part that is not found
+    outliers &= distances > (target.tolerance or NEAR_EVERYWHERE * match.model.chord)
     together = _largest_group(measurement.footpoints, outliers)
     if len(together) > LARGEST_GROUP * len(distances):
         failures.append(
@@ -101,7 +103,7 @@ def failures_of(
     crowded = crowded_at_edges(outliers, measurement.footpoints) if target.open else {}
     places = {f"at the {name}": rows for name, rows in crowded.items()}
     # points off a true surface lie to either side of it: the sign test (Dixon and Mood 1946)
-    inside = outliers & (measurement.deviations < 0.0)
+    inside, off = outliers & (measurement.deviations < 0.0), int(np.count_nonzero(outliers))
     count = int(np.count_nonzero(inside))
     if target.open and not places and binomtest(count, max(off, 1), alternative="greater").pvalue < SIGNIFICANCE:
         places = {"inside the blade": inside}

@@ -24,13 +24,13 @@ from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, ca
 from bladewright.fitting.model_selection.selection import (
     GUESS_NOISE,
     QUICK_POINTS,
-    SETTLED_RICH,
     SEVERAL_POINTS,
     THOROUGH_POINTS,
     determined,
     selected_match,
 )
 from bladewright.fitting.model_selection.structure import reshaped, structure_of
+from bladewright.fitting.model_selection.structure_search import SETTLED_RICH
 from bladewright.fitting.models.model import ModelShape, model_of
 from bladewright.fitting.models.sectioned import infeasibility
 from bladewright.nurbs.basis import Reals

@@ -26,13 +26,9 @@ from bladewright.fitting.matching.search import (
     is_exact,
     searched,
 )
-from bladewright.fitting.model_selection.selection import (
-    NEAR,
-    QUICK_POINTS,
-    determined,
-    selected_match,
-)
+from bladewright.fitting.model_selection.selection import QUICK_POINTS, determined, selected_match
 from bladewright.fitting.model_selection.structure import structure_of
+from bladewright.fitting.model_selection.structure_search import NEAR
 from bladewright.fitting.models.sectioned import SINGLE_SECTION
 from bladewright.section.checks import UNITS
 

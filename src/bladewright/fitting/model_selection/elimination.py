@@ -7,16 +7,15 @@ Draper and Smith 1998, section 15.3; Lawson 1961 (weights).
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
-from bladewright.errors import DesignError, FitError
 from bladewright.fitting.matching.scales import scales_of
-from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
+from bladewright.fitting.matching.search import Match
 from bladewright.fitting.model_selection.laws import Counts, ResizableLaw
 from bladewright.fitting.model_selection.structure import Structure, reshaped, resizable_laws, structure_of
 from bladewright.nurbs.basis import Reals
@@ -252,7 +251,7 @@ def eliminated(model: LinearModel, least: int, tolerance: float | None = None) -
     while now is not None:
         if tolerance is not None:
             now = reweighted_prediction(model, now, tolerance)
-            if now.largest > LARGEST_PREDICTED * tolerance:
+            if found and now.largest > LARGEST_PREDICTED * tolerance:
                 break
         found.append(now)
         losses = model.losses(now)
@@ -327,49 +326,3 @@ def _reduced(model: LinearModel, prediction: Prediction, most: int) -> list[Pred
         model.prediction([*prediction.counts[:law], smaller, *prediction.counts[law + 1 :]]) for law, smaller in counts
     ]
     return [each for each in found if each is not None]
-
-
-REWEIGHTED_SEARCHES = 6
-"""searches of one structure with other weights at most (design/matching_constants.md)"""
-TOUCHED = 0.05
-"""excess over the tolerance, of it, that the last of these is foreseen to have where they go on: each reduces it by the
-same ratio as the one before. Half and twice change nothing measured (design/matching_constants.md)."""
-
-
-def nearest_to_tolerance(task: Task, start: Match, weights: Reals, rich: Match, tolerance: float) -> Match:
-    """The match nearest to a tolerance [m] of searches of one structure, whose weights (n,) rise with the distances."""
-    best, design, noise, before = start, start.design, start.rms, np.inf
-    weights = np.where(weights > 0.0, weights, task.weights)
-    for left in reversed(range(REWEIGHTED_SEARCHES)):
-        if best is not start and largest_of(best, rich) <= tolerance:
-            break
-        weighted = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
-        try:
-            found = searched(weighted, design, noise=noise, rounds=1, min_reduction=ROUGH_REDUCTION)
-        except (FitError, DesignError):
-            break
-        excess = largest_of(found, rich) - tolerance
-        best = found if best is start or tolerance + excess < largest_of(best, rich) else best
-        if (excess / before) ** left * excess > TOUCHED * tolerance:
-            break
-        design, noise, before = found.design, found.rms, excess
-        weights = reweighted(weights, found.state.footpoints.distances, tolerance)
-    return best
-
-
-def largest_of(match: Match, rich: Match) -> float:
-    """The largest distance [m] of the points that took part in a rich match: ends that drew back leave none out."""
-    return float(np.max(match.state.footpoints.distances[rich.rows]))
-
-
-def confirmed_match(task: Task, match: Match, tolerance: float) -> Match:
-    """A match of some of the points that keeps a tolerance at more of them, by their weights."""
-    found = match
-    for _ in range(REWEIGHTED_SEARCHES):
-        found = searched(task, found.design, noise=match.rms, rounds=0)
-        if found.maximum <= tolerance:
-            break
-        weights = reweighted(task.weights, found.state.footpoints.distances, tolerance)
-        task = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
-        found = searched(task, found.design, noise=match.rms, rounds=1, min_reduction=ROUGH_REDUCTION)
-    return found

@@ -1,0 +1,351 @@
+"""The structure of fewest parameters that keeps an aim: about a match narrower ones are predicted, and searched.
+
+The aim is a number of parameters, or a largest distance; where nothing is asked, the cloud's noise (Morozov 1966), or a
+distance that a rich match keeps, which the regularisation of its laws holds (P-splines: Eilers and Marx 1996).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import islice
+
+import numpy as np
+
+from bladewright.designs import Design
+from bladewright.errors import DesignError, FitError
+from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, MatchTarget, trusted_distance
+from bladewright.fitting.matching.noise import EXACT
+from bladewright.fitting.matching.search import (
+    QUICK_ROUNDS,
+    ROUGH_REDUCTION,
+    Match,
+    Task,
+    evaluated,
+    has_systematic_misfit,
+    is_exact,
+    is_refused,
+    searched,
+    without_false_outliers,
+)
+from bladewright.fitting.model_selection.elimination import (
+    LARGEST_PREDICTED,
+    PREDICTED,
+    LinearModel,
+    Prediction,
+    best_of_size,
+    eliminated,
+    reweighted,
+    reweighted_prediction,
+)
+from bladewright.fitting.model_selection.reshaping import rich_structure, widened_where_feasible, wider_structure
+from bladewright.fitting.model_selection.structure import reshaped, rows_shown
+from bladewright.nurbs.basis import Reals
+
+REFUSED_MARGIN = 6.0
+"""factor of the margin of edge radii where a rich match that searches allow is refused when built."""
+NOISE_REASON = "what is left is the cloud's own noise, {:.2g} mm: more control points would follow it"
+TRIED_PARAMETERS, MOST_TRIED = 100, 4
+"""parameters of the structures of one size that are searched, in all, as predictions are linear; and structures at most
+(`MOST_TRIED`), so that one can be built. With one of 22 the ORC nozzle is met by 1.68e-3 of the chord, not 1.50e-3;
+with half of either LS89 is met by 1.0e-3, not 8.1e-4 (design/matching_constants.md)."""
+STAGES = 3
+"""times that structures are predicted anew about the match that they have led to: half and twice change nothing
+measured (design/matching_constants.md)."""
+NEAR_RICH = 1.25
+"""largest distance that a match keeps whose misfit is no noise and of which nothing is asked, of that of a rich one:
+half and twice change nothing measured (design/matching_constants.md)."""
+NOISE_QUANTILE = 1.645
+"""standard errors by which a misfit may pass the noise, which one of pure noise does once in twenty times
+(design/matching_constants.md)."""
+NEAR, ENOUGH = 0.5 * EXACT, 0.8 * NEAR_EVERYWHERE
+"""largest distances, of the chord, that matches are predicted to have of which nothing is asked: where they can be
+exact, and else. They are parts of what is asked of the matches themselves, as predictions are linear."""
+WORTHWHILE, MOST_PREDICTIONS = 0.9, 8
+"""share of the parameters of a match that a structure may have with which a search for fewer goes on; and matches about
+which structures are predicted for one aim at most (`MOST_PREDICTIONS`)"""
+SETTLED_RICH = 0.9
+"""ratio of the misfits of two rounds above which the search of a rich structure has settled (design/matching.md)"""
+RICHER_GAIN = 0.6
+"""ratio of the misfits of two rich structures above which a richer one is of no use: a third as many control points
+again bring a cubic spline nearer by (3/4)^4, a third, half as many by a fifth (de Boor 1978, chapter 12)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Aim:
+    """What a match of few parameters is to keep."""
+
+    predicted: Callable[[LinearModel], list[Prediction]]
+    """the structures that are predicted to keep it, with fewer and fewer parameters"""
+    searched: Callable[[LinearModel, Prediction], Match | None]
+    """the match of one of them; None where it has no shape"""
+    kept: Callable[[Match], bool]
+    """whether a match keeps it"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class StructureSearch:
+    """The search for the structure of few parameters that keeps an aim."""
+
+    task: Task
+    samples: int
+    """along the chord at least"""
+    first: Design
+    """what searches begin from where predictions have no shape"""
+    predictions: int = MOST_PREDICTIONS
+    """matches about which structures are predicted at most"""
+
+    def holds(self, match: Match, tolerance: float) -> bool:
+        """Whether a match of the same structure is predicted to keep a tolerance [m] where points are weighed so."""
+        if match.maximum <= tolerance:
+            return True
+        model, relative = self._model(match), tolerance / match.model.chord
+        found = model.prediction(model.counts)
+        return found is not None and reweighted_prediction(model, found, relative).largest <= PREDICTED * relative
+
+    def rich(self, match: Match, target: MatchTarget, *, sampled: bool = False) -> Match:
+        """The match of a rich structure, and of ever richer ones until one is near enough or comes hardly nearer.
+
+        Where it is to be `sampled`, the first has no more control points along the chord than its samples determine. In
+        space, where points are exact or something is asked, a structure loses what it does not need before it grows.
+        """
+        found, least = match, target.tolerance or NEAR * match.model.chord
+        search = partial(searched, min_reduction=ROUGH_REDUCTION, settled=SETTLED_RICH, fading=True)
+        shown = len(self.task.points), rows_shown(match.state.footpoints.v[match.rows])
+        while found is match or (has_systematic_misfit(found) and not self._is_enough(found, target)):
+            try:
+                slim = self.task.dimension == 3 and (not target.open or is_exact(found))
+                about = self._without_surplus(found) if slim and found is not match else found.design
+                first = partial(rich_structure, sampled=sampled)
+                widened = first if found is match else partial(wider_structure, slim=slim)
+                design = widened_where_feasible(about, widened(about, self.task.free(about), *shown))
+                richer = search(self.task, design, noise=found.rms, enough=lambda each: each.maximum <= least)
+                richer = without_false_outliers(self.task, richer)
+            except (DesignError, FitError):
+                break
+            before, found = found, richer if found is match or richer.rms < found.rms else found
+            if before is not match and min(richer.rms / before.rms, richer.maximum / before.maximum) > RICHER_GAIN:
+                break
+        return found
+
+    def _is_enough(self, rich: Match, target: MatchTarget) -> bool:
+        """Whether a rich match needs no richer one: where nothing is asked, exact points are met more nearly."""
+        if target.open:
+            return rich.maximum <= (NEAR if is_exact(rich) else NEAR_EVERYWHERE) * rich.model.chord
+        return target.tolerance is None or self.holds(rich, target.tolerance)
+
+    def _without_surplus(self, rich: Match) -> Design:
+        """The design of the fewest control points that is predicted to leave hardly more than a rich match."""
+        candidates = eliminated(model := self._model(rich), 0)
+        chosen = [each for each in candidates if each.rms <= NEAR_RICH * candidates[0].rms]
+        start = self._start(model, chosen[-1]) if chosen else None
+        return rich.design if start is None else start.design
+
+    def of_size(self, rich: Match, most: int) -> Match:
+        """The match of at most so many parameters that predictions lead to; the rich one where none can be built."""
+        best, about = None, rich
+        for _ in range(STAGES):
+            model = self._model(about)
+            searches = (self._searched(model, each) for each in best_of_size(model, most)[:MOST_TRIED])
+            built = (each for found in searches if found and (each := self._built(found)))
+            fresh = min(islice(built, max(1, TRIED_PARAMETERS // most)), key=lambda each: each.misfit, default=None)
+            if fresh is None or (best is not None and fresh.misfit >= best.misfit):
+                break
+            best, about = fresh, self._widened(fresh)
+        return best or rich
+
+    def _built(self, match: Match) -> Match | None:
+        """A match that can be built: where it is refused, one whose edge radii are kept further from what is."""
+        if not is_refused(match):
+            return match
+        roots = match.problem.cloud_residuals.roots
+        weights = np.where(roots > 0.0, roots**2, self.task.weights)
+        task = replace(self.task, margin_factor=REFUSED_MARGIN * self.task.margin_factor, weights=weights)
+        try:
+            found = searched(task, match.design, noise=match.rms, rounds=1, min_reduction=ROUGH_REDUCTION)
+        except FitError:
+            return None
+        return None if is_refused(found) else found
+
+    def well_predicted(self, rich: Match) -> Match:
+        """The match of fewest parameters that is at the cloud's noise, or where its misfit is none, near everywhere."""
+        model = self._model(rich)
+        every = eliminated(model, 0)
+        # what the rich match leaves is the noise, where its neighbours share none of it (Morozov 1966)
+        noise = (every[0].deviation if every else 0.0) * (1.0 + NOISE_QUANTILE / np.sqrt(2.0 * model.points))
+        nearest = NEAR_RICH * min((each.largest for each in every), default=0.0)
+        aim = max(NEAR if is_exact(rich) or nearest <= EXACT else ENOUGH, nearest)
+        near = max(trusted_distance(rich), NEAR_RICH * largest_of(rich, rich))
+        systematic = has_systematic_misfit(rich)
+
+        def predicted(model: LinearModel) -> list[Prediction]:
+            candidates = eliminated(model, 0)
+            return [each for each in candidates if (each.largest <= aim if systematic else each.deviation <= noise)]
+
+        def kept(match: Match) -> bool:
+            return not has_systematic_misfit(match) or largest_of(match, rich) <= near
+
+        found, nearby = self._fewest(rich, None, _Aim(predicted=predicted, searched=self._searched, kept=kept))
+        return found or nearby or rich
+
+    def near_everywhere(self, rich: Match) -> Match:
+        """The match that predicts well, or one that is nearer where that is far from some points."""
+        found, limit = self.well_predicted(rich), trusted_distance(rich)
+        if not has_systematic_misfit(found) or largest_of(found, rich) <= limit:
+            return found
+        nearer, _ = self.within(rich, limit)
+        return nearer if largest_of(nearer, rich) < largest_of(found, rich) and not is_refused(nearer) else found
+
+    def within(self, rich: Match, tolerance: float) -> tuple[Match, str]:
+        """The match of fewest parameters found that keeps a tolerance [m]; the nearest, and why, where none does."""
+        relative = tolerance / rich.model.chord
+
+        def predicted(model: LinearModel) -> list[Prediction]:
+            return [each for each in eliminated(model, 0, relative) if each.largest <= PREDICTED * relative]
+
+        def reweighted_search(model: LinearModel, prediction: Prediction) -> Match | None:
+            start = self._start(model, prediction)
+            return start and nearest_to_tolerance(self.task, start, prediction.weights, rich, tolerance)
+
+        def kept(match: Match) -> bool:
+            return largest_of(match, rich) <= tolerance
+
+        found, nearest = rich if kept(rich) and not is_refused(rich) else None, None
+        if kept(rich) or has_systematic_misfit(rich):
+            aim = _Aim(predicted=predicted, searched=reweighted_search, kept=kept)
+            found, nearest = self._fewest(rich, found, aim)
+        if found is not None:
+            return found, ""
+        nearest = min(filter(None, (rich, nearest)), key=lambda each: largest_of(each, rich))
+        if not has_systematic_misfit(nearest):
+            return self.well_predicted(rich), NOISE_REASON.format(1e3 * rich.noise_estimate.noise)
+        return nearest, "no structure was found that keeps the tolerance"
+
+    def _fewest(self, rich: Match, found: Match | None, aim: _Aim) -> tuple[Match | None, Match | None]:
+        """The match of fewest parameters found that keeps an aim, and the nearest of those that do not.
+
+        Each structure is predicted about the last match, with more control points in every law, as a linear model about
+        a rich match does not reach as far as narrow structures lie. Where nothing is predicted about it that is wider
+        than what has failed, a structure between that and the last that did is searched.
+        """
+        nearest, about, failed, place = None, rich, 0, -1
+        for _ in range(self.predictions):
+            model, widest = self._model(about), found or rich
+            most = WORTHWHILE * len(found.problem.paths) if found else np.inf
+            predictions = aim.predicted(model)
+            promising = [each for each in predictions if failed < each.parameters <= most]
+            if not promising and about is not widest:
+                about, place = widest, 0
+                continue
+            if not predictions and about is rich:
+                promising = eliminated(model, 0)[:1]
+            if not promising:
+                break
+            chosen, place = promising[-1 if place else len(promising) // 2], -1
+            fresh = aim.searched(model, chosen)
+            match = None if fresh is None else self._built(fresh)
+            if match is not None and aim.kept(match):
+                found = match
+            elif predictions:
+                # what is not predicted to keep the aim does not show what is too narrow
+                failed = chosen.parameters
+            if match is not None:
+                about = self._widened(match)
+                nearest = min(filter(None, (nearest, match)), key=lambda each: largest_of(each, rich))
+            elif not predictions:
+                break
+        return found, nearest
+
+    def _model(self, match: Match) -> LinearModel:
+        self.task.progress("structure")
+        return LinearModel(match, self.samples)
+
+    def _widened(self, match: Match) -> Match:
+        """A match with more control points in every law, not searched, or the same where that leaves it no shape."""
+        try:
+            free, rows = self.task.free(match.design), rows_shown(match.state.footpoints.v[match.rows])
+            design = reshaped(match.design, wider_structure(match.design, free, len(self.task.points), rows))
+            return searched(self.task, design, noise=match.rms, rounds=0)
+        except (DesignError, FitError):
+            return match
+
+    def _searched(self, model: LinearModel, prediction: Prediction) -> Match | None:
+        """The match of a predicted structure; None where it has no shape."""
+        start = self._start(model, prediction)
+        if start is None:
+            return None
+        try:
+            return searched(
+                self.task, start.design, rounds=QUICK_ROUNDS, noise=prediction.rms, min_reduction=ROUGH_REDUCTION
+            )
+        except (FitError, DesignError):
+            return None
+
+    def _start(self, model: LinearModel, prediction: Prediction) -> Match | None:
+        """The predicted design or the nearest to the rich match; the first design in its structure if none has a shape.
+
+        Predictions that go too far are no nearer than the rich match.
+        """
+        structure = model.structured(prediction.counts).with_samples(self.samples)
+        designs = (
+            partial(model.designed, prediction),
+            partial(model.designed, replace(prediction, change=np.zeros_like(prediction.change))),
+            partial(reshaped, self.first, structure),
+        )
+        found: Match | None = None
+        for number, design in enumerate(designs):
+            if number == len(designs) - 1 and found is not None:
+                break
+            try:
+                fresh = evaluated(self.task, design(), noise=prediction.rms)
+            except (DesignError, FitError):
+                continue
+            found = fresh if found is None or fresh.misfit < found.misfit else found
+            if found.misfit < LARGEST_PREDICTED * prediction.rms:
+                break
+        return found
+
+
+REWEIGHTED_SEARCHES = 6
+"""searches of one structure with other weights at most (design/matching_constants.md)"""
+TOUCHED = 0.05
+"""excess over the tolerance, of it, that the last of these is foreseen to have where they go on: each reduces it by the
+same ratio as the one before. Half and twice change nothing measured (design/matching_constants.md)."""
+
+
+def nearest_to_tolerance(task: Task, start: Match, weights: Reals, rich: Match, tolerance: float) -> Match:
+    """The match nearest to a tolerance [m] of searches of one structure, whose weights (n,) rise with the distances."""
+    best, design, noise, before = start, start.design, start.rms, np.inf
+    weights = np.where(weights > 0.0, weights, task.weights)
+    for left in reversed(range(REWEIGHTED_SEARCHES)):
+        if best is not start and largest_of(best, rich) <= tolerance:
+            break
+        weighted = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
+        try:
+            found = searched(weighted, design, noise=noise, rounds=1, min_reduction=ROUGH_REDUCTION)
+        except (FitError, DesignError):
+            break
+        excess = largest_of(found, rich) - tolerance
+        best = found if best is start or tolerance + excess < largest_of(best, rich) else best
+        if (excess / before) ** left * excess > TOUCHED * tolerance:
+            break
+        design, noise, before = found.design, found.rms, excess
+        weights = reweighted(weights, found.state.footpoints.distances, tolerance)
+    return best
+
+
+def largest_of(match: Match, rich: Match) -> float:
+    """The largest distance [m] of the points that took part in a rich match: ends that drew back leave none out."""
+    return float(np.max(match.state.footpoints.distances[rich.rows]))
+
+
+def confirmed_match(task: Task, match: Match, tolerance: float) -> Match:
+    """A match of some of the points that keeps a tolerance at more of them, by their weights."""
+    found = match
+    for _ in range(REWEIGHTED_SEARCHES):
+        found = searched(task, found.design, noise=match.rms, rounds=0)
+        if found.maximum <= tolerance:
+            break
+        weights = reweighted(task.weights, found.state.footpoints.distances, tolerance)
+        task = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
+        found = searched(task, found.design, noise=match.rms, rounds=1, min_reduction=ROUGH_REDUCTION)
+    return found
