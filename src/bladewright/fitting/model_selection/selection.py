@@ -91,7 +91,7 @@ def selected_match(
     if not target.open:
         return _searched_further(many, found), reason
     last, note = determined(many, found)
-    if has_systematic_misfit(last) and last.maximum > trusted_distance(last):
+    if has_systematic_misfit(last) and last.maximum > (limit := trusted_distance(last)) and search.holds(rich, limit):
         # what the last search left out or held made it miss what was predicted
         within, _ = search.within(rich, ENOUGH * rich.model.chord)
         last, note = min((last, note), determined(many, within), key=lambda each: each[0].maximum)

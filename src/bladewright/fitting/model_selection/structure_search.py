@@ -169,20 +169,27 @@ class StructureSearch:
     def well_predicted(self, rich: Match) -> Match:
         """The match of fewest parameters that is at the cloud's noise, or where its misfit is none, near everywhere."""
         model = self._model(rich)
-        every = eliminated(model, 0)
         # what the rich match leaves is the noise, where its neighbours share none of it (Morozov 1966)
-        noise = (every[0].deviation if every else 0.0) * (1.0 + NOISE_QUANTILE / np.sqrt(2.0 * model.points))
-        nearest = NEAR_RICH * min((each.largest for each in every), default=0.0)
-        aim = max(NEAR if is_exact(rich) or nearest <= EXACT else ENOUGH, nearest)
-        near = max(trusted_distance(rich), NEAR_RICH * largest_of(rich, rich))
-        systematic = has_systematic_misfit(rich)
+        noise = max((each.deviation for each in eliminated(model, 0)[:1]), default=0.0)
+        noise *= 1.0 + NOISE_QUANTILE / np.sqrt(2.0 * model.points)
+        systematic, exact, least = has_systematic_misfit(rich), is_exact(rich), largest_of(rich, rich)
 
         def predicted(model: LinearModel) -> list[Prediction]:
             candidates = eliminated(model, 0)
-            return [each for each in candidates if (each.largest <= aim if systematic else each.deviation <= noise)]
+            if not systematic:
+                return [each for each in candidates if each.deviation <= noise]
+            nearest = NEAR_RICH * min((each.largest for each in candidates), default=0.0)
+            aim = max(NEAR if exact or nearest <= EXACT else ENOUGH, nearest)
+            return [each for each in candidates if each.largest <= aim]
 
         def kept(match: Match) -> bool:
-            return not has_systematic_misfit(match) or largest_of(match, rich) <= near
+            # one that is nearer than the rich match shows that others can be
+            nonlocal least
+            largest = largest_of(match, rich)
+            least = min(least, largest)
+            chord = rich.model.chord
+            limit = EXACT if exact or least <= EXACT * chord else NEAR_EVERYWHERE
+            return not has_systematic_misfit(match) or largest <= max(limit * chord, NEAR_RICH * least)
 
         found, nearby = self._fewest(rich, None, _Aim(predicted=predicted, searched=self._searched, kept=kept))
         return found or nearby or rich
@@ -190,7 +197,7 @@ class StructureSearch:
     def near_everywhere(self, rich: Match) -> Match:
         """The match that predicts well, or one that is nearer where that is far from some points."""
         found, limit = self.well_predicted(rich), trusted_distance(rich)
-        if not has_systematic_misfit(found) or largest_of(found, rich) <= limit:
+        if not has_systematic_misfit(found) or largest_of(found, rich) <= limit or not self.holds(rich, limit):
             return found
         nearer, _ = self.within(rich, limit)
         return nearer if largest_of(nearer, rich) < largest_of(found, rich) and not is_refused(nearer) else found
@@ -224,35 +231,33 @@ class StructureSearch:
         """The match of fewest parameters found that keeps an aim, and the nearest of those that do not.
 
         Each structure is predicted about the last match, with more control points in every law, as a linear model about
-        a rich match does not reach as far as narrow structures lie. Where nothing is predicted about it that is wider
-        than what has failed, a structure between that and the last that did is searched.
+        a rich match does not reach as far as narrow structures lie. Where that leads no nearer, or nothing is predicted
+        there that is wider than what has failed, one between this and the last that did is searched.
         """
-        nearest, about, failed, place = None, rich, 0, -1
+        nearest, least, about, failed, narrowest = None, np.inf, rich, 0, True
         for _ in range(self.predictions):
-            model, widest = self._model(about), found or rich
+            model, last = self._model(about), found or rich
             most = WORTHWHILE * len(found.problem.paths) if found else np.inf
             predictions = aim.predicted(model)
             promising = [each for each in predictions if failed < each.parameters <= most]
-            if not promising and about is not widest:
-                about, place = widest, 0
-                continue
             if not predictions and about is rich:
                 promising = eliminated(model, 0)[:1]
-            if not promising:
+            if promising:
+                chosen = promising[-1 if narrowest else len(promising) // 2]
+                fresh = aim.searched(model, chosen)
+                match = None if fresh is None else self._built(fresh)
+                kept = match is not None and aim.kept(match)
+                if predictions and not kept:
+                    failed = chosen.parameters
+                if match is not None and (kept or largest_of(match, rich) < least):
+                    found, nearest, least = (
+                        (match, nearest, np.inf) if kept else (found, match, largest_of(match, rich))
+                    )
+                    about, narrowest = self._widened(match), True
+                    continue
+            if about is last and not (promising and predictions):
                 break
-            chosen, place = promising[-1 if place else len(promising) // 2], -1
-            fresh = aim.searched(model, chosen)
-            match = None if fresh is None else self._built(fresh)
-            if match is not None and aim.kept(match):
-                found = match
-            elif predictions:
-                # what is not predicted to keep the aim does not show what is too narrow
-                failed = chosen.parameters
-            if match is not None:
-                about = self._widened(match)
-                nearest = min(filter(None, (nearest, match)), key=lambda each: largest_of(each, rich))
-            elif not predictions:
-                break
+            about, narrowest = last, False
         return found, nearest
 
     def _model(self, match: Match) -> LinearModel:
