@@ -12,11 +12,12 @@ from bladewright.errors import FitError
 from bladewright.fitting import free_parameters
 from bladewright.fitting.families import blades
 from bladewright.fitting.families.blades import _alike, _kind_of
-from bladewright.fitting.families.first_parts import CAMBER_ANGLES
+from bladewright.fitting.families.first_parts import CAMBER_ANGLES, WEDGE_DIFFUSERS
 from bladewright.fitting.families.flow_path import ChannelCurves
 from bladewright.fitting.families.kinds import FAMILIES
 from bladewright.fitting.families.laws import counts_of, part_along_span, with_mean_laws
 from bladewright.fitting.families.section_shape import section_shape, unrolled
+from bladewright.fitting.families.sections import misfits
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import FreeParameters, gauge_parameters, sliding_coordinate
 from bladewright.fitting.matching.scales import scales_of
@@ -205,10 +206,33 @@ def test_contours_of_a_profile_that_tapers_keep_its_kind_of_edge_and_its_shape()
     assert len(free_parameters._along_contour(contours)) == blades.LAW_COUNT * (blades.CONTOUR_POINTS + 2)
 
 
-def test_kinds_of_section_that_are_alike_are_kept_in_their_order_and_differ_by_words_alone():
-    assert _alike([1.05, 1.0, 1.2], lambda misfit: misfit) == [1.05, 1.0]
+def stood_in(distances, left_out=()):
+    """What matches are compared by: distances of points to a section of chord 2 m, some of them outliers."""
+    taken = np.delete(np.array(distances), left_out)
+    return SimpleNamespace(
+        rms=float(np.sqrt(np.mean(taken**2))) / 2.0,
+        model=SimpleNamespace(chord=2.0),
+        state=SimpleNamespace(footpoints=SimpleNamespace(distances=np.array(distances))),
+        ends=SimpleNamespace(on_end_face=np.zeros(len(distances), dtype=bool)),
+    )
+
+
+def test_matches_are_compared_by_their_outliers_too_but_by_none_more_than_is_far():
+    near, alike = stood_in([2.0] * 20), stood_in([2.1] * 20)
+    short = stood_in([1.9] * 18 + [9.0] * 2, left_out=[18, 19])
+    planted = [stood_in([miss] * 19 + [off], left_out=[19]) for miss, off in ((2.0, 500.0), (2.1, 400.0))]
+    assert misfits([near, alike]) == pytest.approx([1.0, 1.05])
+    assert misfits([near, short])[1] > 1.5
+    # both count the far one alike
+    clipped = np.sqrt((19.0 * np.array([1.0, 1.05]) ** 2 + 6.0**2) / 20.0)
+    assert misfits(planted) == pytest.approx(clipped.tolist())
+    assert _alike([alike, near, stood_in([2.4] * 20)]) == [0, 1]
+
+
+def test_kinds_of_section_differ_by_words_and_by_what_they_have_none_of():
     section = VANE.section
     moved = section.changed({path: 0.999 * value for path, value in section.parameters().items()})
     assert _kind_of(moved) == _kind_of(section)
     kinds = {_kind_of(replace(CAMBER_ANGLES[0], trailing_edge=edge)) for edge in ("round", "blunt", "sharp")}
     assert len(kinds) == 3
+    assert len({_kind_of(each) for each in WEDGE_DIFFUSERS}) == 2

@@ -1,6 +1,6 @@
 """From points in space to a blade from sections of a family."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import chain, groupby
 from typing import Any
@@ -15,7 +15,7 @@ from bladewright.fitting.families.flow_path import ChannelCurves
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
 from bladewright.fitting.families.laws import counts_of, nearest_law, part_along_span, with_mean_laws, with_stations_of
 from bladewright.fitting.families.section_shape import PLACES, SectionShape, section_shape, unrolled
-from bladewright.fitting.families.sections import CONSIDERED, PROMISING, compared, criterion, is_far
+from bladewright.fitting.families.sections import CONSIDERED, PROMISING, compared, criterion, is_far, misfits
 from bladewright.fitting.free_parameters import EDGES, FreeParameters, gauge_parameters
 from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.matching.footpoints import nearest_footpoints
@@ -213,10 +213,11 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
             tried += [(match, frame) for match in matches]
         except FitError as error:
             refusal = error
-    tried.sort(key=lambda each: each[0].rms)
     few, blades = task.thinned(QUICK_POINTS), list[tuple[Match, _Frame]]()
-    for chosen, frame in tried:
-        if chosen.rms > PROMISING * tried[0][0].rms:
+    off = misfits([match for match, _ in tried]) if tried else []
+    for number in np.argsort(off, kind="stable"):
+        chosen, frame = tried[number]
+        if off[number] > PROMISING * min(off):
             break
         if any(frame.plane == each.plane and frame is not each for _, each in blades):
             continue
@@ -229,7 +230,7 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
             refusal = error
     if not blades:
         raise refusal
-    best, frame = _alike(blades, lambda each: each[0].rms)[0]
+    best, frame = blades[_alike([match for match, _ in blades])[0]]
     nearest: Any = best.design
     if not frame.turn:
         return 0.0, nearest
@@ -368,27 +369,28 @@ def _matched(kind: FitFamily, shape: SectionShape, points: Reals, parts: Sequenc
         )
         for part in parts
     )
-    nearest = compared(task, designs)[:CONSIDERED]
-    found = [searched(task, each.design, rounds=QUICK_ROUNDS, fading=True) for each in nearest]
+    tried = compared(task, designs)[:CONSIDERED]
+    found = [searched(task, each.design, rounds=QUICK_ROUNDS, fading=True) for each in tried]
     kinds = dict[Any, Match]()
-    for each in sorted(found, key=lambda match: match.rms):
-        design: Any = each.design
-        kinds.setdefault(_kind_of(design.section), each)
-    return _alike(list(kinds.values()), lambda match: match.rms)
+    for number in np.argsort(misfits(found), kind="stable"):
+        design: Any = found[number].design
+        kinds.setdefault(_kind_of(design.section), found[number])
+    nearest = list(kinds.values())
+    return [nearest[number] for number in _alike(nearest)]
 
 
 def _kind_of(part: Part) -> tuple[Any, ...]:
-    """What a part is besides its numbers: its class and its words, and those of the parts in it."""
+    """What a part is besides its numbers: its class, its words, what it has none of, and those of the parts in it."""
     values = (getattr(part, each.name) for each in fields(part))
     return type(part), *(
-        _kind_of(each) if isinstance(each, Part) else each for each in values if isinstance(each, str | Part)
+        _kind_of(each) if isinstance(each, Part) else each for each in values if isinstance(each, str | Part | None)
     )
 
 
-def _alike(found: list[Any], misfit: Callable[[Any], float]) -> list[Any]:
-    """Those that are hardly worse than the best, in their order."""
-    least = min(misfit(each) for each in found)
-    return [each for each in found if misfit(each) <= ALIKE * least]
+def _alike(matches: Sequence[Match]) -> list[int]:
+    """The numbers of those that are hardly worse than the best, in their order."""
+    off = misfits(matches)
+    return [number for number, each in enumerate(off) if each <= ALIKE * min(off)]
 
 
 def _section_parameters(design: Design) -> tuple[str, ...]:

@@ -16,6 +16,7 @@ from bladewright.fitting.families.section_shape import SectionShape, section_sha
 from bladewright.fitting.families.unified import matched_unified
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.section import first_section
+from bladewright.fitting.matching.noise import OUTLYING_MISFIT
 from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import (
     ROUGH_REDUCTION,
@@ -81,7 +82,8 @@ def matched_section(
     parts = kind.first_parts(shape, None if like is None else like.section)
     tried = compared(task.thinned(TRIAL_POINTS), designs_of(kind, shape, parts, header, task))
     structure = None if like is None else structure_of(like)
-    promising = [each.design for each in tried[:CONSIDERED] if each.rms < PROMISING * tried[0].rms]
+    off = misfits(tried[:CONSIDERED])
+    promising = [each.design for each, miss in zip(tried, off, strict=False) if miss < PROMISING * off[0]]
     found, reason = nearest(task, promising, target, structure)
     if kind.through_points is not None and like is None and is_far(found, target):
         outline, note = _through_points(task, kind, tried, header, target, found)
@@ -227,7 +229,18 @@ def compared(task: Task, designs: Iterator[Design]) -> list[Match]:
             refusal = FitError(str(error))
     if not found:
         raise FitError(f"no section of the family was found near the points ({refusal}); give a start design")
-    return sorted(found, key=lambda each: each.rms)
+    return [found[number] for number in np.argsort(misfits(found), kind="stable")]
+
+
+def misfits(matches: Sequence[Match]) -> list[float]:
+    """Root mean square distances by which matches to the same points are compared, each of its chord.
+
+    Outliers count, as those of an edge that is not found are its own points, but none by more than what would be one of
+    the nearest match.
+    """
+    bound = OUTLYING_MISFIT * min(each.rms for each in matches)
+    distances = (each.state.footpoints.distances[~each.ends.on_end_face] / each.model.chord for each in matches)
+    return [float(np.sqrt(np.mean(np.minimum(each, bound) ** 2))) for each in distances]
 
 
 def can_be_built_within(match: Match, tolerance: float) -> bool:
