@@ -53,6 +53,7 @@ ROWS = {
     "families/part_laws.py": ("twisted-blunt-noisy-profile", "Aachen2D-suction-pressure"),
     "families/sections.py": ("example-compressor-stator", "Aachen2D-suction-pressure"),
     "fit.py": ("LS89-free",),
+    "model_selection/structure_search.py": (*SECTIONS, *BLADES, "Aachen-tolerance"),
     "matching/blade_ends.py": ("Aachen-parameters", "radial-diffuser-free"),
     "": (*SECTIONS, *BLADES),
 }

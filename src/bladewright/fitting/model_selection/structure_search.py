@@ -188,7 +188,7 @@ class StructureSearch:
             largest = largest_of(match, rich)
             least = min(least, largest)
             chord = rich.model.chord
-            limit = EXACT if exact or least <= EXACT * chord else NEAR_EVERYWHERE
+            limit = NEAR if exact or least <= NEAR * chord else NEAR_EVERYWHERE
             return not has_systematic_misfit(match) or largest <= max(limit * chord, NEAR_RICH * least)
 
         found, nearby = self._fewest(rich, None, _Aim(predicted=predicted, searched=self._searched, kept=kept))
