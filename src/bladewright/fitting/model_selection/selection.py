@@ -91,8 +91,10 @@ def selected_match(
     if not target.open:
         return _searched_further(many, found), reason
     last, note = determined(many, found)
-    if has_systematic_misfit(last) and last.maximum > (limit := trusted_distance(last)) and search.holds(rich, limit):
-        # what the last search left out or held made it miss what was predicted
+    limit = trusted_distance(last)
+    lost = has_systematic_misfit(last) and last.maximum > limit
+    if lost and evaluated(many, rich.design, noise=rich.rms).maximum <= limit:
+        # what the last search left out or held made it miss what was predicted, which the rich match keeps
         within, _ = search.within(rich, ENOUGH * rich.model.chord)
         last, note = min((last, note), determined(many, within), key=lambda each: each[0].maximum)
     return last, note
