@@ -1,0 +1,69 @@
+"""How the structure of fewest parameters is found, with predictions and searches stood in by numbers of parameters."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from bladewright.fitting.model_selection import structure_search
+from bladewright.fitting.model_selection.structure_search import MOST_PREDICTIONS, WORTHWHILE, StructureSearch, _Aim
+
+RICH = 40
+
+
+def match(count):
+    """A match of so many parameters."""
+    return SimpleNamespace(problem=SimpleNamespace(paths=range(count)), count=count)
+
+
+@pytest.fixture
+def found_by(monkeypatch):
+    """Runs the search from a rich match: what it finds, the nearest that fails, and what it searched."""
+    monkeypatch.setattr(StructureSearch, "_model", lambda self, match: match)
+    monkeypatch.setattr(StructureSearch, "_built", lambda self, match: match)
+    monkeypatch.setattr(StructureSearch, "_widened", lambda self, match: SimpleNamespace(**vars(match)))
+
+    def run(predicted, enough, largest, shapeless=()):
+        searched = []
+
+        def search(_, prediction):
+            searched.append(prediction.parameters)
+            return None if prediction.parameters in shapeless else match(prediction.parameters)
+
+        monkeypatch.setattr(structure_search, "largest_of", lambda each, _: largest(each.count))
+        aim = _Aim(
+            predicted=lambda about: [
+                SimpleNamespace(parameters=n) for n in range(RICH, predicted(about.count) - 1, -1)
+            ],
+            searched=search,
+            kept=lambda each: each.count >= enough,
+        )
+        found, nearest = StructureSearch(task=None, samples=0, first=None)._fewest(match(RICH), None, aim)
+        return found and found.count, nearest and nearest.count, searched
+
+    return run
+
+
+def test_predictions_about_a_rich_match_that_go_too_far_are_mended_about_the_match_that_they_lead_to(found_by):
+    found, nearest, searched = found_by(lambda about: 6 if about == RICH else 12, 12, lambda count: 1.0 / count)
+    assert (found, nearest, searched) == (12, 6, [6, 12])
+
+
+def test_a_match_that_leads_no_nearer_sends_the_search_between_what_failed_and_what_did(found_by):
+    # each that fails is further off than the one before
+    found, _, searched = found_by(lambda about: 6, 20, float)
+    assert searched[:3] == [6, 7, 24]
+    assert 20 <= found < 20 / WORTHWHILE
+    assert len(searched) <= MOST_PREDICTIONS
+
+
+def test_structures_without_a_shape_are_passed_by(found_by):
+    found, nearest, searched = found_by(lambda about: 6, 6, lambda count: 1.0 / count, shapeless=range(6, 15))
+    assert (found, nearest, searched[:2]) == (15, None, [6, 23])
+    assert len(searched) <= MOST_PREDICTIONS
+
+
+def test_where_nothing_keeps_the_aim_the_nearest_is_given_and_the_search_ends(found_by):
+    found, nearest, searched = found_by(lambda about: 30, RICH + 1, lambda count: 1.0 / count)
+    assert found is None
+    assert nearest == max(searched)
+    assert len(searched) <= MOST_PREDICTIONS
