@@ -1,9 +1,12 @@
 """How the structure of fewest parameters is found, with predictions and searches stood in by numbers of parameters."""
 
+from itertools import chain, repeat
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
+from bladewright.fitting.assessment.acceptance import MatchTarget
 from bladewright.fitting.model_selection import structure_search
 from bladewright.fitting.model_selection.structure_search import MOST_PREDICTIONS, WORTHWHILE, StructureSearch, _Aim
 
@@ -18,9 +21,9 @@ def match(count):
 @pytest.fixture
 def found_by(monkeypatch):
     """Runs the search from a rich match: what it finds, the nearest that fails, and what it searched."""
-    monkeypatch.setattr(StructureSearch, "_model", lambda self, match: match)
-    monkeypatch.setattr(StructureSearch, "_built", lambda self, match: match)
-    monkeypatch.setattr(StructureSearch, "_widened", lambda self, match: SimpleNamespace(**vars(match)))
+    monkeypatch.setattr(StructureSearch, "_model", lambda _, match: match)
+    monkeypatch.setattr(StructureSearch, "_built", lambda _, match: match)
+    monkeypatch.setattr(StructureSearch, "_widened", lambda _, match: SimpleNamespace(**vars(match)))
 
     def run(predicted, enough, largest, shapeless=()):
         searched = []
@@ -50,20 +53,53 @@ def test_predictions_about_a_rich_match_that_go_too_far_are_mended_about_the_mat
 
 def test_a_match_that_leads_no_nearer_sends_the_search_between_what_failed_and_what_did(found_by):
     # each that fails is further off than the one before
-    found, _, searched = found_by(lambda about: 6, 20, float)
+    found, _, searched = found_by(lambda _: 6, 20, float)
     assert searched[:3] == [6, 7, 24]
     assert 20 <= found < 20 / WORTHWHILE
     assert len(searched) <= MOST_PREDICTIONS
 
 
 def test_structures_without_a_shape_are_passed_by(found_by):
-    found, nearest, searched = found_by(lambda about: 6, 6, lambda count: 1.0 / count, shapeless=range(6, 15))
+    found, nearest, searched = found_by(lambda _: 6, 6, lambda count: 1.0 / count, shapeless=range(6, 15))
     assert (found, nearest, searched[:2]) == (15, None, [6, 23])
     assert len(searched) <= MOST_PREDICTIONS
 
 
 def test_where_nothing_keeps_the_aim_the_nearest_is_given_and_the_search_ends(found_by):
-    found, nearest, searched = found_by(lambda about: 30, RICH + 1, lambda count: 1.0 / count)
+    found, nearest, searched = found_by(lambda _: 30, RICH + 1, lambda count: 1.0 / count)
     assert found is None
     assert nearest == max(searched)
     assert len(searched) <= MOST_PREDICTIONS
+
+
+def test_a_richer_structure_that_is_no_nearer_ends_the_search_for_rich_ones(monkeypatch):
+    task = SimpleNamespace(points=range(100), dimension=3, free=lambda _: ())
+    feet = SimpleNamespace(footpoints=SimpleNamespace(v=np.zeros(1)))
+    # nearer at its worst place, and further off elsewhere, whenever it is searched
+    off = chain([(1e-4, 1e-2)], repeat((2e-4, 1e-3)))
+    searched = []
+
+    def search(*_, **__):
+        rms, maximum = next(off)
+        searched.append(SimpleNamespace(rms=rms, maximum=maximum, design=None))
+        if len(searched) > 5:
+            raise AssertionError("it is searched for ever")
+        return searched[-1]
+
+    for name, stand_in in {
+        "searched": search,
+        "without_false_outliers": lambda _, match: match,
+        "has_systematic_misfit": lambda _: True,
+        "rows_shown": lambda _: 1,
+        "rich_structure": lambda *_, **__: None,
+        "wider_structure": lambda *_, **__: None,
+        "widened_where_feasible": lambda design, _: design,
+    }.items():
+        monkeypatch.setattr(structure_search, name, stand_in)
+    monkeypatch.setattr(StructureSearch, "_is_enough", lambda *_: False)
+    monkeypatch.setattr(StructureSearch, "_without_surplus", lambda _, match: match.design)
+    first = SimpleNamespace(
+        rms=1e-3, maximum=1e-1, design=None, rows=slice(None), state=feet, model=SimpleNamespace(chord=1.0)
+    )
+    found = StructureSearch(task=task, samples=0, first=None).rich(first, MatchTarget(tolerance=1e-5))
+    assert (found is searched[0], len(searched)) == (True, 2)

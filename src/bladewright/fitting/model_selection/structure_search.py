@@ -123,7 +123,9 @@ class StructureSearch:
             except (DesignError, FitError):
                 break
             before, found = found, richer if found is match or richer.rms < found.rms else found
-            if before is not match and min(richer.rms / before.rms, richer.maximum / before.maximum) > RICHER_GAIN:
+            gained = min(richer.rms / before.rms, richer.maximum / before.maximum) <= RICHER_GAIN
+            # one that is no nearer would be searched from again, for ever
+            if before is not match and (found is before or not gained):
                 break
         return found
 
