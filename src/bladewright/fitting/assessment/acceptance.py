@@ -103,12 +103,12 @@ def failures_of(
     crowded = crowded_at_edges(outliers, measurement.footpoints) if target.open else {}
     places = {f"at the {name}": rows for name, rows in crowded.items()}
     # points off a true surface lie to either side of it: the sign test (Dixon and Mood 1946)
-    inside, off = outliers & (measurement.deviations < 0.0), int(np.count_nonzero(outliers))
+    inside, far = outliers & (measurement.deviations < 0.0), int(np.count_nonzero(outliers))
     count = int(np.count_nonzero(inside))
-    if target.open and not places and binomtest(count, max(off, 1), alternative="greater").pvalue < SIGNIFICANCE:
+    if target.open and not places and binomtest(count, max(far, 1), alternative="greater").pvalue < SIGNIFICANCE:
         places = {"inside the blade": inside}
     failures += [
-        f"{np.count_nonzero(rows)} of {off} outliers lie {place}, up to "
+        f"{np.count_nonzero(rows)} of {far} outliers lie {place}, up to "
         f"{with_unit(design, np.max(distances[rows]), 2)} from its sides, more than by chance: is the shape not found "
         "there, or the blade worn? Leave them out, give a start, or state a tolerance"
         for place, rows in places.items()

@@ -59,10 +59,12 @@ NOISE_QUANTILE = 1.645
 (design/matching_constants.md)."""
 NEAR, ENOUGH = 0.5 * EXACT, 0.8 * NEAR_EVERYWHERE
 """largest distances, of the chord, that matches are predicted to have of which nothing is asked: where they can be
-exact, and else. They are parts of what is asked of the matches themselves, as predictions are linear."""
+exact, and else. They are parts of what is asked of the matches themselves, as predictions are linear; exact clouds are
+held to theirs at their points, as between them distances were up to 2.1 times as large (design/matching.md)."""
 WORTHWHILE, MOST_PREDICTIONS = 0.9, 8
 """share of the parameters of a match that a structure may have with which a search for fewer goes on; and matches about
-which structures are predicted for one aim at most (`MOST_PREDICTIONS`)"""
+which structures are predicted for one aim at most (`MOST_PREDICTIONS`): half and twice change nothing measured
+(design/matching_constants.md)."""
 SETTLED_RICH = 0.9
 """ratio of the misfits of two rounds above which the search of a rich structure has settled (design/matching.md)"""
 RICHER_GAIN = 0.6
@@ -251,10 +253,10 @@ class StructureSearch:
                 kept = match is not None and aim.kept(match)
                 if predictions and not kept:
                     failed = chosen.parameters
-                if match is not None and (kept or largest_of(match, rich) < least):
-                    found, nearest, least = (
-                        (match, nearest, np.inf) if kept else (found, match, largest_of(match, rich))
-                    )
+                nearer = match is not None and largest_of(match, rich) < least
+                if match is not None and (kept or nearer):
+                    found, nearest = (match, nearest) if kept else (found, match)
+                    least = np.inf if kept else largest_of(match, rich)
                     about, narrowest = self._widened(match), True
                     continue
             if about is last and not (promising and predictions):
