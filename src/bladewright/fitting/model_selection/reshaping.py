@@ -98,14 +98,18 @@ def wider_structure(
 ) -> Structure:
     """A structure with a third as many control points again in every law of a design, and a rich one at least.
 
-    Along the span it has no more of them than `rows` of points. Of a structure that is `slim`, which has lost what it
-    does not need, half as many again and no more.
+    Along the span it has no more of them than `rows` of points, and along the chord no more than the design's samples
+    determine, unless it has as many: with four samples more the same laws are another shape, 1e-3 to 3e-3 of the chord
+    off (design/matching.md). Of a structure that is `slim`, which has lost what it does not need, half as many again
+    and no more.
     """
     own = structure_of(design)
     wide, share = (own, 2) if slim else (richest(design), 3)
     for law in resizable_laws(design):
         counts = zip(own.counts[law.name], wide.counts[law.name], law.limits()[1], strict=True)
-        more = (max(few, min(count + max(1, count // share), most)) for count, few, most in counts)
+        more = [max(few, min(count + max(1, count // share), most)) for count, few, most in counts]
+        if own.samples and law.name in THICKNESSES and own.counts[law.name][0] < own.samples - SPARE_SAMPLES:
+            more[0] = min(more[0], own.samples - SPARE_SAMPLES)
         wide = wide.resized(law.name, tuple(more))
     return _towards(wide, design, free, points, rows)
 
