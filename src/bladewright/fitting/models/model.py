@@ -24,8 +24,8 @@ from bladewright.nurbs.collocation import collocation
 from bladewright.nurbs.surface import Surface
 
 FOLD_GRID = (41, 21)
-"""places along and across a channel at which it is checked for folding: those of `build`, as a fold between half as many
-along ended Rotor 67 in a blade that cannot be built (design/matching.md)"""
+"""places along and across a channel at which it is checked for folding: those of `build`, as a fold between half as
+many along ended Rotor 67 in a blade that cannot be built (design/matching.md)"""
 SMALLEST_JACOBIAN = 0.02
 """smallest Jacobian of a channel, of its median: one that comes nearer to folding over is held there;
 half and twice change nothing measured (design/matching_constants.md)"""
