@@ -134,7 +134,7 @@ class StructureSearch:
             except (DesignError, FitError):
                 break
             before, found = found, richer if found is match or richer.rms < found.rms else found
-            near = found.maximum <= NEAR_EVERYWHERE * found.model.chord
+            near = found.maximum <= NEAR_EVERYWHERE * match.model.chord
             ratio = min(richer.rms / before.rms, richer.maximum / before.maximum)
             gained = ratio <= (RICHER_GAIN if near else SETTLED_RICH)
             # one that is no nearer would be searched from again, for ever
