@@ -9,7 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bladewright.fitting.assessment.result import LISTED_OUTLIERS, Estimate, Fit, Motion, report, text
+from bladewright.fitting.assessment.estimates import Estimate
+from bladewright.fitting.assessment.result import LISTED_OUTLIERS, Fit, Motion, report, text
 from machines import example
 
 DESIGN = example("turbine-section")

@@ -6,7 +6,6 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.special import stdtrit
 
-from bladewright.fitting.assessment.result import Estimate
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.matching.noise import neighbourhood_of
 from bladewright.fitting.matching.search import Match
@@ -26,6 +25,24 @@ LARGEST_CONDITION = 1e7
 nothing measured (design/matching_constants.md)"""
 AT_BOUND = 1e-3
 """distance from a bound, of a parameter's scale, within which it lies on the bound."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Estimate:
+    """A fitted parameter, in the unit of its field."""
+
+    path: str
+    value: float
+    deviation: float
+    """standard deviation that the cloud's noise gives it; infinite where the cloud does not determine it"""
+    low: float
+    """lower end of the 95 % interval"""
+    high: float
+    """upper end of the 95 % interval"""
+    identified: bool
+    """whether the cloud determines it"""
+    at_bound: bool
+    """whether it lies on one of its bounds"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

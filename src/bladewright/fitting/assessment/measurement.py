@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bladewright.blade.native.blade import Blade
-from bladewright.fitting.assessment.deviation import REGIONS
+from bladewright.fitting.assessment.result import REGIONS
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS, WallPoints, blade_ends_of
 from bladewright.fitting.matching.footpoints import Footpoints, nearest_footpoints
 from bladewright.fitting.matching.noise import EDGE_BAND, NoiseEstimate, noise_of

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from bladewright.designs import Design, unit_at
 from bladewright.display import Shown
-from bladewright.fitting.assessment.deviation import FIGURES, REGIONS, Deviation, by_region, deviation_of
+from bladewright.fitting.assessment.estimates import Estimate
 from bladewright.frozen import FrozenRecord
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
@@ -24,6 +24,10 @@ MILLIMETRES = 1.0 / UNITS["mm"]
 """millimetres in a metre"""
 FEW_PARAMETERS = 30
 """parameters up to which the text shows all of them; with more it shows the doubtful ones"""
+REGIONS = ("sides", "leading edge", "trailing edge", "ends")
+"""regions of a blade in which a point of a cloud may lie"""
+FIGURES = ("mean", "rms", "percentile_99", "maximum")
+"""figures of a deviation that are reported"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,21 +45,27 @@ class Motion:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Estimate:
-    """A fitted parameter, in the unit of its field."""
+class Deviation:
+    """Distances of some points of a cloud from the surface [m]."""
 
-    path: str
-    value: float
-    deviation: float
-    """standard deviation that the cloud's noise gives it; infinite where the cloud does not determine it"""
-    low: float
-    """lower end of the 95 % interval"""
-    high: float
-    """upper end of the 95 % interval"""
-    identified: bool
-    """whether the cloud determines it"""
-    at_bound: bool
-    """whether it lies on one of its bounds"""
+    count: int
+    mean: float
+    rms: float
+    percentile_99: float
+    maximum: float
+
+
+def deviation_of(distances: Reals) -> Deviation:
+    """The figures of distances (n,) [m]; no numbers where there are none."""
+    if len(distances) == 0:
+        return Deviation(count=0, **dict.fromkeys(FIGURES, math.nan))
+    return Deviation(
+        count=len(distances),
+        mean=float(np.mean(distances)),
+        rms=float(np.sqrt(np.mean(distances**2))),
+        percentile_99=float(np.percentile(distances, 99.0)),
+        maximum=float(np.max(distances)),
+    )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -125,14 +135,18 @@ class Fit(FrozenRecord, Shown):
 
     @cached_property
     def by_region(self) -> dict[str, Deviation]:
-        """Of the inliers of each region."""
-        return by_region(self.distances[self.inliers], self.regions[self.inliers])
+        """Of the inliers of each region that has some."""
+        return self._by_name(self.inliers, self.regions, REGIONS)
 
     @cached_property
     def by_kind_set_aside(self) -> dict[str, Deviation]:
         """Of the points that are set aside, by what they lie on."""
-        kinds = np.unique(self.set_aside[self.set_aside != ""])
-        return {str(kind): deviation_of(self.distances[self.set_aside == kind]) for kind in kinds}
+        return self._by_name(self.set_aside != "", self.set_aside, [str(kind) for kind in np.unique(self.set_aside)])
+
+    def _by_name(self, rows: NDArray[np.bool_], names: NDArray[np.str_], known: Sequence[str]) -> dict[str, Deviation]:
+        """Of those of some points (n,) that have each of the known names, where there are any."""
+        found = {name: deviation_of(self.distances[rows & (names == name)]) for name in known}
+        return {name: each for name, each in found.items() if each.count}
 
     @property
     def mean(self) -> float:
@@ -185,96 +199,92 @@ def report(fit: Fit) -> dict[str, Any]:
     None. `outliers` lists the first 1000, by their index in the cloud. Estimates are in the units of their fields, and
     so are rows and columns of the covariance, in the same order.
     """
-    chord, regions, motion = fit.chord, fit.by_region, fit.motion
-    far = fit.distances[fit.outliers]
-    listed = zip(fit.outliers[:LISTED_OUTLIERS], far[:LISTED_OUTLIERS], strict=True)
-    return {
+    off, listed = fit.distances[fit.outliers], fit.outliers[:LISTED_OUTLIERS]
+    nothing = deviation_of(np.empty(0))
+    found = {
         "name": fit.design.name,  # type: ignore[attr-defined]
         "passed": fit.passed,
-        "failures": list(fit.failures),
-        "notes": list(fit.notes),
+        "failures": fit.failures,
+        "notes": fit.notes,
         "interrupted": fit.interrupted,
         "points": len(fit.cloud),
-        "inliers": int(np.count_nonzero(fit.inliers)),
+        "inliers": np.count_nonzero(fit.inliers),
         "outliers": {
-            "count": len(far),
-            "farthest_m": plain(np.max(far)) if len(far) else None,
-            "listed": [{"index": int(i), **_in_units("distance", d)} for i, d in listed],
+            "count": len(off),
+            "farthest_m": np.max(off, initial=-np.inf),
+            "listed": [{"index": i, **_in_units("distance", fit.distances[i])} for i in listed],
         },
-        "set_aside": {kind: _figures(each, chord) for kind, each in fit.by_kind_set_aside.items()},
-        "chord_m": plain(chord),
+        "set_aside": {kind: _figures(each, fit.chord) for kind, each in fit.by_kind_set_aside.items()},
+        "chord_m": fit.chord,
         **_in_units("tolerance", fit.tolerance),
         **_in_units("noise", fit.noise),
         "deviation": {
-            "all": _figures(fit.deviation, chord),
-            **{name: _figures(regions.get(name), chord) for name in REGIONS},
+            "all": _figures(fit.deviation, fit.chord),
+            **{name: _figures(fit.by_region.get(name, nothing), fit.chord) for name in REGIONS},
         },
         "worst": _worst(fit),
-        "curvature_extrema": {name: int(count) for name, count in fit.extrema.items()},
+        "curvature_extrema": dict(fit.extrema),
         "parameters": len(fit.estimates),
-        "rank": int(fit.rank),
-        "condition": plain(fit.condition),
-        "unidentified": list(fit.unidentified),
-        "at_bounds": list(fit.at_bounds),
+        "rank": fit.rank,
+        "condition": fit.condition,
+        "unidentified": fit.unidentified,
+        "at_bounds": fit.at_bounds,
         "estimates": [
             {
                 "path": each.path,
                 "unit": unit_of_parameter(fit.design, each.path),
-                "value": plain(each.value),
-                "standard_deviation": plain(each.deviation),
-                "interval_95": [plain(each.low), plain(each.high)],
-                "identified": bool(each.identified),
-                "at_bound": bool(each.at_bound),
+                "value": each.value,
+                "standard_deviation": each.deviation,
+                "interval_95": (each.low, each.high),
+                "identified": each.identified,
+                "at_bound": each.at_bound,
             }
             for each in fit.estimates
         ],
-        "covariance": plain(fit.covariance),
-        "motion": motion and {"rotation": plain(motion.rotation), **_in_units("translation", motion.translation)},
-        "evaluations": int(fit.evaluations),
+        "covariance": fit.covariance,
+        "motion": fit.motion and {"rotation": fit.motion.rotation, **_in_units("translation", fit.motion.translation)},
+        "evaluations": fit.evaluations,
     }
+    return {key: plain(value) for key, value in found.items()}
 
 
 def _in_units(name: str, metres: Any) -> dict[str, Any]:
     """Lengths in metres and in millimetres; None of what is not there."""
-    return {f"{name}_m": plain(metres), f"{name}_mm": plain(None if metres is None else metres * MILLIMETRES)}
+    return {f"{name}_m": metres, f"{name}_mm": None if metres is None else metres * MILLIMETRES}
 
 
-def _figures(deviation: Deviation | None, chord: float) -> dict[str, Any]:
+def _figures(deviation: Deviation, chord: float) -> dict[str, Any]:
     units = {"m": 1.0, "mm": MILLIMETRES, "of_chord": 1.0 / chord}
-    known = deviation is not None and deviation.count > 0
-    return {"count": deviation.count if deviation else 0} | {
-        unit: {name: plain(getattr(deviation, name) * scale) if known else None for name in FIGURES}
-        for unit, scale in units.items()
+    return {"count": deviation.count} | {
+        unit: {name: getattr(deviation, name) * scale for name in FIGURES} for unit, scale in units.items()
     }
 
 
 def _worst(fit: Fit) -> dict[str, Any] | None:
     """The inlier that is farthest off."""
-    index = np.flatnonzero(fit.inliers)
-    if len(index) == 0:
+    if not np.any(fit.inliers):
         return None
-    i = int(index[np.argmax(fit.distances[index])])
+    i = int(np.argmax(np.where(fit.inliers, fit.distances, -np.inf)))
     return {
         "index": i,
-        "point_m": plain(fit.cloud[i]),
-        "region": str(fit.regions[i]),
-        "place": str(fit.places[i]),
-        "u": plain(fit.u[i]),
-        "v": plain(fit.v[i]),
+        "point_m": fit.cloud[i],
+        "region": fit.regions[i],
+        "place": fit.places[i],
+        "u": fit.u[i],
+        "v": fit.v[i],
         **_in_units("deviation", fit.deviations[i]),
     }
 
 
 def plain(value: Any) -> Any:
-    """Numbers, arrays and sequences as JSON has them; None for what is not finite."""
-    if isinstance(value, np.ndarray):
+    """Numbers, arrays, sequences and dictionaries as JSON has them; None for what is not finite."""
+    if isinstance(value, np.ndarray | np.generic):
         return plain(value.tolist())
+    if isinstance(value, dict):
+        return {key: plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
         return [plain(item) for item in value]
-    if value is None or isinstance(value, bool | int | str):
-        return value
-    number = float(value)
-    return number if math.isfinite(number) else None
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def text(fit: Fit) -> str:
@@ -282,59 +292,56 @@ def text(fit: Fit) -> str:
 
     Lengths are in the design's own unit.
     """
-    design, count = fit.design, len(fit.outliers)
-    verdict, state = "passed" if fit.passed else "FAILED", ", interrupted" if fit.interrupted else ""
-    lines = [f"{design.name}: {verdict}{state}"]  # type: ignore[attr-defined]
-    lines += [f"  - {failure}" for failure in fit.failures]
-    lines += _table(fit)
+    design, off = fit.design, fit.distances[fit.outliers]
+    result = ("passed" if fit.passed else "FAILED") + (", interrupted" if fit.interrupted else "")
     tolerance = "" if fit.tolerance is None else f"tolerance {with_unit(design, fit.tolerance)}, "
-    lines.append(
-        f"  {tolerance}noise of the cloud {with_unit(design, fit.noise)}, chord {with_unit(design, fit.chord, 6)}"
-    )
+    noise, chord = with_unit(design, fit.noise), with_unit(design, fit.chord, 6)
     outliers = "no outliers"
-    if count:
-        shown = ", ".join(str(i) for i in fit.outliers[:8]) + (", ..." if count > 8 else "")
-        farthest = with_unit(design, np.max(fit.distances[fit.outliers]))
-        share = f"({100.0 * count / len(fit.cloud):.2g} %) up to {farthest} away"
-        outliers = f"{_number_of(count, 'outlier')} {share}: number {shown}"
-    lines.append(f"  {_number_of(len(fit.cloud), 'point')}, {outliers}")
-    set_aside = ", ".join(
-        f"{each.count} on the {kind} (up to {with_unit(design, each.maximum)} away)"
-        for kind, each in fit.by_kind_set_aside.items()
-    )
-    lines += [f"  set aside: {set_aside}"] if set_aside else []
+    if len(off):
+        listed = ", ".join(str(i) for i in fit.outliers[:8]) + (", ..." if len(off) > 8 else "")
+        share = f"({100.0 * len(off) / len(fit.cloud):.2g} %) up to {with_unit(design, np.max(off))} away"
+        outliers = f"{_number_of(len(off), 'outlier')} {share}: number {listed}"
+    lines = [
+        f"{design.name}: {result}",  # type: ignore[attr-defined]
+        *(f"  - {failure}" for failure in fit.failures),
+        *_table(fit),
+        f"  {tolerance}noise of the cloud {noise}, chord {chord}",
+        f"  {_number_of(len(fit.cloud), 'point')}, {outliers}",
+    ]
+    if fit.by_kind_set_aside:
+        kinds = fit.by_kind_set_aside.items()
+        set_aside = (
+            f"{each.count} on the {kind} (up to {with_unit(design, each.maximum)} away)" for kind, each in kinds
+        )
+        lines.append(f"  set aside: {', '.join(set_aside)}")
     if fit.motion is not None:
         turn = np.asarray(fit.motion.rotation)
         cosine = (np.trace(turn) - (1.0 if len(turn) == 3 else 0.0)) / 2.0
         angle = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
         shift = f"({', '.join(in_unit(design, each, 6) for each in fit.motion.translation)}) {unit_of_lengths(design)}"
         lines.append(f"  moved to the machine's axes: turned by {angle:.6g} deg, then shifted by {shift}")
-    waves = ", ".join(f"{number} on the {name} side" for name, number in fit.extrema.items())
-    lines += [f"  extrema of curvature: {waves}"] if waves else []
-    lines.append(
-        f"  {_number_of(len(fit.estimates), 'free parameter')}, rank {fit.rank}, condition {fit.condition:.2g}, "
-        f"{_number_of(fit.evaluations, 'evaluation')}"
-    )
-    lines += _parameters(fit)
-    lines += [f"  note: {note}" for note in fit.notes]
-    return "\n".join(lines)
+    if fit.extrema:
+        counts = ", ".join(f"{number} on the {name} side" for name, number in fit.extrema.items())
+        lines.append(f"  extrema of curvature: {counts}")
+    free, evaluations = _number_of(len(fit.estimates), "free parameter"), _number_of(fit.evaluations, "evaluation")
+    lines.append(f"  {free}, rank {fit.rank}, condition {fit.condition:.2g}, {evaluations}")
+    return "\n".join([*lines, *_parameters(fit), *(f"  note: {note}" for note in fit.notes)])
 
 
 def _table(fit: Fit) -> list[str]:
     """Deviations of the inliers, a row for each region."""
-    chord = fit.chord
     rows = [[f"deviation [{unit_of_lengths(fit.design)}]", "points", "mean", "rms", "99 %", "max", "max of chord"]]
     for name, of in {"all inliers": fit.deviation, **{name: fit.by_region.get(name) for name in REGIONS}}.items():
-        if of is None or of.count == 0:
+        if of is not None and of.count:
+            figures = [in_unit(fit.design, getattr(of, figure)) for figure in FIGURES]
+            rows.append([name, str(of.count), *figures, f"{of.maximum / fit.chord:.1e}"])
+        elif name != "ends":
             # sections have no ends, but a cloud without points on an edge says nothing about it
-            rows += [] if name == "ends" else [[name, "none", *"-----"]]
-            continue
-        figures = [in_unit(fit.design, getattr(of, figure)) for figure in FIGURES]
-        rows.append([name, str(of.count), *figures, f"{of.maximum / chord:.1e}"])
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+            rows.append([name, "none", *"-----"])
+    first, *widths = (max(map(len, column)) for column in zip(*rows, strict=True))
     return [
-        "  " + f"{row[0]:<{widths[0]}}" + "".join(f"  {cell:>{widths[i]}}" for i, cell in enumerate(row) if i)
-        for row in rows
+        "  ".join([f"  {name:<{first}}", *(f"{cell:>{width}}" for cell, width in zip(cells, widths, strict=True))])
+        for name, *cells in rows
     ]
 
 
@@ -345,13 +352,12 @@ def _parameters(fit: Fit) -> list[str]:
     width = max((len(each.path) for each in shown), default=0)
     lines = []
     for each in shown:
-        conditions = {"NOT IDENTIFIED": not each.identified, "AT BOUND": each.at_bound}
-        marks = [word for word, holds in conditions.items() if holds]
+        marks = ["NOT IDENTIFIED"] * (not each.identified) + ["AT BOUND"] * each.at_bound
         value, spread = _with_spread(each)
         unit = unit_of_parameter(fit.design, each.path)
         lines.append(f"    {each.path:<{width}}  {value:>12}  {spread:<12}  {unit:<4} {', '.join(marks)}".rstrip())
-    if len(shown) < len(fit.estimates):
-        rest = len(fit.estimates) - len(shown)
+    rest = len(fit.estimates) - len(shown)
+    if rest:
         lines.append(f"    {'the others' if shown else 'all'} ({rest}) are identified and inside their bounds")
     return lines
 
@@ -371,7 +377,7 @@ def _number_of(count: int, what: str) -> str:
 
 def unit_of_lengths(design: Design) -> str:
     """The design's unit of length."""
-    return str(getattr(design, "length_unit", "mm"))
+    return str(design.length_unit)  # type: ignore[attr-defined]
 
 
 def in_unit(design: Design, metres: float, digits: int = 3) -> str:
