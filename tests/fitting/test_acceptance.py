@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bladewright.fitting.assessment.acceptance import MatchTarget, failures_of
+from bladewright.fitting.assessment.acceptance import Acceptance, MatchTarget
 from bladewright.fitting.assessment.estimates import parameter_estimates
 from bladewright.fitting.assessment.measurement import measured
 from bladewright.fitting.free_parameters import free_parameters_of
@@ -24,7 +24,11 @@ def matched(points, design, free="stagger"):
 def said_of(points, design, target, free="stagger"):
     """Why a design as it stands does not pass for points."""
     found = matched(points, design, free)
-    return failures_of(measured(points, design.build()), parameter_estimates(found), found, target)
+    return tuple(accepted(found, measured(points, design.build()), target).failures())
+
+
+def accepted(found, measurement, target):
+    return Acceptance(match=found, measurement=measurement, statistics=parameter_estimates(found), target=target)
 
 
 @pytest.mark.parametrize(
@@ -66,7 +70,7 @@ def test_outliers_beside_each_other_are_a_shape_that_is_not_found_unless_they_ar
     deviations = np.where(inliers, measurement.deviations, off * built.chord)
     noise_estimate = replace(measurement.noise_estimate, inliers=inliers)
     measurement = replace(measurement, noise_estimate=noise_estimate, deviations=deviations)
-    failures = failures_of(measurement, parameter_estimates(found), found, MatchTarget(structured=True))
+    failures = accepted(found, measurement, MatchTarget(structured=True)).failures()
     assert any("beside each other" in each for each in failures) is said
 
 
@@ -102,7 +106,7 @@ def test_points_of_a_solid_on_its_end_faces_are_said_to_be_there():
     assert set(at.places[at.faced]) == set(STATOR.ends)
     found = matched(points, STATOR)
     said = [
-        " ".join(failures_of(each, parameter_estimates(found), found, MatchTarget(structured=True)))
+        " ".join(accepted(found, each, MatchTarget(structured=True)).failures())
         for each in (replace(at, faced=np.zeros(len(points), dtype=bool)), at)
     ]
     assert "lie off the blade" in said[0]

@@ -26,7 +26,8 @@ def found(slopes, *, alike=1, low=-np.inf, high=np.inf, seed=1, deviation=1e-3):
             slopes=lambda *_: slopes,
             roots=np.ones(POINTS),
             points=PLACES,
-            precision=None,
+            precision=np.ones(POINTS),
+            ends=SimpleNamespace(near=np.empty(0, dtype=int)),
         ),
         values_of=lambda _: np.arange(1.0, COUNT + 1.0),
     )
@@ -121,8 +122,7 @@ def test_weights_of_a_search_that_are_no_inverse_variances_take_no_error_away():
     roots = np.sqrt(random.uniform(0.1, 10.0, POINTS))
     match, rows = found(slopes)
     cloud_residuals = match.problem.cloud_residuals
-    cloud_residuals.precision, cloud_residuals.roots = np.ones(POINTS), roots
-    cloud_residuals.ends = SimpleNamespace(near=np.empty(0, dtype=int))
+    cloud_residuals.roots = roots
     cloud_residuals.residuals, cloud_residuals.slopes = lambda _: roots * rows, lambda *_: roots[:, None] * slopes
     # of errors of one size, by hand: the inverse of the weighted curvature on both sides of what the errors do
     inverse = np.linalg.inv(slopes.T @ (roots[:, None] ** 2 * slopes))

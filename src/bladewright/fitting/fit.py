@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Literal
 
@@ -15,7 +15,7 @@ from bladewright.blade.native.extrema import extrema_of
 from bladewright.derivatives.patterns import Patterns
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.assessment.acceptance import MatchTarget, failures_of, notes_of
+from bladewright.fitting.assessment.acceptance import Acceptance, MatchTarget
 from bladewright.fitting.assessment.estimates import parameter_estimates
 from bladewright.fitting.assessment.measurement import measured
 from bladewright.fitting.assessment.result import Fit, Motion
@@ -29,7 +29,7 @@ from bladewright.fitting.families.unified import matched_unified
 from bladewright.fitting.free_parameters import FreeParameters, free_parameters_of
 from bladewright.fitting.initial_guess.blade import spans_along_y
 from bladewright.fitting.matching.noise import EXACT
-from bladewright.fitting.matching.search import Match, Task
+from bladewright.fitting.matching.search import Match, Progress, Task
 from bladewright.fitting.placing import (
     Finishing,
     Matched,
@@ -44,23 +44,6 @@ from bladewright.fitting.registration import axis_motion, composed, found_axes, 
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import choice
 from bladewright.section.unified import UnifiedSection
-
-
-def _aligned(points: Reals, start: Design | None, header: DesignHeader) -> tuple[Motion, DesignHeader, tuple[str, ...]]:
-    """The motion into the machine's axes, the header with the arrangement that it shows, and notes."""
-    if start is not None:
-        motion, notes = registration(points, start)
-        return motion, header, notes
-    motion, notes = found_axes(points, arrangement=header.arrangement)
-    return motion, replace(header, arrangement="linear"), notes
-
-
-def _upright(points: Reals, motion: Motion | None) -> tuple[Motion | None, tuple[str, ...]]:
-    """The motion after which the span of a linear cascade lies along z, and notes."""
-    if not spans_along_y(points if motion is None else motion(points)):
-        return motion, ()
-    return UPRIGHT if motion is None else composed(UPRIGHT, motion), (UPRIGHT_NOTE,)
-
 
 UNIFIED_NAMES = ("unified", "unified-section")
 """names of the unified family"""
@@ -83,8 +66,6 @@ INTERRUPTED_NOTE = (
 """note on a blade that a search had found when it was interrupted"""
 WHOLE_BLADE_HINT = "is it one whole blade, with both sides and both edges? If so, give a start design or bounds"
 """what to check where no design was found"""
-Progress = Callable[[str], None]
-"""is handed a few words on what is done"""
 
 
 def fit(
@@ -129,36 +110,36 @@ def fit(
     Distances are true ones; points that lie off the rest are not weighed (`outliers`). Raises FitError where the cloud
     or the call is wrong, and where no design is found. Reference: Agromayor et al. 2021, section 6.
     """
-    tell: Progress = progress or (lambda _: None)
     points, notes = checked_cloud(cloud), tuple[str, ...]()
     kind = named_family(family, points.shape[1], start if start is not None else like)
     _check_call(points, kind, start, like, tolerance, parameters)
-    finishing, start, like = without_finishing(start, like, name)
-    header = DesignHeader(
-        name=name, length_unit=length_unit, pitch=pitch, arrangement=arrangement, blade_count=blade_count
-    )
     if axis is not None and align:
         raise FitError(
             "axis and align are both given: axis says where the machine's axis is, align finds it; leave one out"
         )
+    precision = None if weights is None else _weights(weights, len(points))
+    finishing, start, like = without_finishing(start, like, name)
     given = start is not None or like is not None
-    motion, more = None if axis is None else axis_motion(axis, points.shape[1]), tuple[str, ...]()
-    if align:
-        tell("axes")
-        motion, header, more = _aligned(points, start, header)
-    elif arrangement == "linear" and points.shape[1] == 3 and not given:
-        motion, more = _upright(points, motion)
+    header = DesignHeader(
+        name=name, length_unit=length_unit, pitch=pitch, arrangement=arrangement, blade_count=blade_count
+    )
     target = MatchTarget(tolerance=tolerance, parameters=parameters, structured=parameters is None and given)
     free_parameters = free_parameters_of(free, fixed, started=start is not None)
+    tell: Progress = progress or (lambda _: None)
+    if align:
+        tell("axes")
+    motion, more = _motion_of(points, start, axis, header, align=align, given=given)
+    if align and start is None:
+        header = replace(header, arrangement="linear")
 
     def place(motion: Motion | None, start: Design | None, notes: tuple[str, ...]) -> PlacedTask:
         every = Task(
             points=points if motion is None else motion(points),
-            weights=_weights(weights, len(points)),
+            weights=np.ones(len(points)) if precision is None else precision,
             free=free_parameters,
             bounds=dict(bounds or {}),
             progress=tell,
-            precision=None if weights is None else _weights(weights, len(points)),
+            precision=precision,
         )
         walls = walls_of(every.points, header.arrangement or getattr(start or like, "arrangement", None))
         refuse_several_blades(every.points[~walls.on_curve])
@@ -192,6 +173,25 @@ def fit(
     return _reported(found, built, here, target, notes, finishing)
 
 
+def _motion_of(
+    points: Reals,
+    start: Design | None,
+    axis: str | Sequence[float] | None,
+    header: DesignHeader,
+    *,
+    align: bool,
+    given: bool,
+) -> tuple[Motion | None, tuple[str, ...]]:
+    """The motion into the machine's axes, and notes; without a given design a cascade's span lies along z after it."""
+    if align:
+        return found_axes(points, arrangement=header.arrangement) if start is None else registration(points, start)
+    motion = None if axis is None else axis_motion(axis, points.shape[1])
+    cascade = header.arrangement == "linear" and points.shape[1] == 3 and not given
+    if cascade and spans_along_y(points if motion is None else motion(points)):
+        return UPRIGHT if motion is None else composed(UPRIGHT, motion), (UPRIGHT_NOTE,)
+    return motion, ()
+
+
 def named_family(family: str, dimension: int, given: Design | None = None) -> FitFamily | None:
     """The named family, or that of a given design where none is named; None is the unified one.
 
@@ -217,18 +217,29 @@ def _check_call(
     tolerance: float | None,
     count: int | None,
 ) -> None:
-    flat = points.shape[1] == 2
-    kind: type = UnifiedSection if flat else UnifiedBlade
+    """Refuse what does not go together; growth knows the curves of a unified blade's own channel alone."""
+    kind: type = {2: UnifiedSection, 3: UnifiedBlade}[points.shape[1]]
+    of_family, other = "", "points of the other kind"
     if family is not None:
-        kind = family.section if flat else family.blade
+        kind = {2: family.section, 3: family.blade}[points.shape[1]]
+        of_family, other = f" of the family {family.name}", "another family"
     for label, design in (("start", start), ("like", like)):
         if design is not None and not isinstance(design, kind):
             raise FitError(
                 f"{label} is a {type(design).__name__}, and points with {points.shape[1]} coordinates need a "
-                f"{kind.__name__}{'' if family is None else f' of the family {family.name}'}: give such a design, "
-                f"or {'points of the other kind' if family is None else 'another family'}"
+                f"{kind.__name__}{of_family}: give such a design, or {other}"
             )
-    _check_flow_path(start, like, resized=tolerance is not None or count is not None)
+    if isinstance(like, UnifiedBlade) and like.flow_path is not None:
+        raise FitError(
+            "like is a unified blade in a flow path, of which only the numbers change: give it as start, or a design "
+            "with channel.hub and channel.shroud"
+        )
+    resized = tolerance is not None or count is not None
+    if resized and isinstance(start, UnifiedBlade) and start.flow_path is not None:
+        raise FitError(
+            "start is a unified blade in a flow path, whose numbers of control points are kept: leave tolerance and "
+            "parameters out, or give a start with channel.hub and channel.shroud"
+        )
     if tolerance is not None and not 0.0 < tolerance < np.inf:
         raise FitError(f"tolerance is {tolerance!r}: a positive length in metres is needed, such as 5e-5")
     if tolerance is not None and count is not None:
@@ -236,20 +247,6 @@ def _check_call(
     least = 14 if family is None else 4
     if count is not None and (isinstance(count, bool) or not least <= count <= 2000):
         raise FitError(f"parameters is {count!r}: a whole number from {least} to 2000 is needed")
-
-
-def _check_flow_path(start: Design | None, like: Design | None, *, resized: bool) -> None:
-    """Refuse to change the structure of a unified blade in a flow path: growth knows the channel's own curves alone."""
-    if isinstance(like, UnifiedBlade) and like.flow_path is not None:
-        raise FitError(
-            "like is a unified blade in a flow path, of which only the numbers change: give it as start, or a design "
-            "with channel.hub and channel.shroud"
-        )
-    if resized and isinstance(start, UnifiedBlade) and start.flow_path is not None:
-        raise FitError(
-            "start is a unified blade in a flow path, whose numbers of control points are kept: leave tolerance and "
-            "parameters out, or give a start with channel.hub and channel.shroud"
-        )
 
 
 def _searched_for(task: Task) -> Task:
@@ -284,9 +281,8 @@ def _matched(
         return task.best_so_far.instead_of(found, error, structured=target.structured)
 
 
-def _weights(weights: ArrayLike | None, count: int) -> Reals:
-    if weights is None:
-        return np.ones(count)
+def _weights(weights: ArrayLike, count: int) -> Reals:
+    """The given weights, of a mean of one."""
     found = np.asarray(weights, dtype=np.float64)
     if found.shape != (count,) or not np.all(np.isfinite(found)) or np.any(found < 0.0) or not np.any(found > 0.0):
         raise FitError(
@@ -303,9 +299,9 @@ def _reported(
     notes: tuple[str, ...],
     finishing: Finishing | None,
 ) -> Fit:
-    task = here.every
+    task, failures = here.every, list[str]()
     task.progress("measuring")
-    design, built, failures = match.design, plain, list[str]()
+    design, built = match.design, plain
     if finishing is not None:
         try:
             finished = finishing.given_to(match.design)
@@ -314,6 +310,12 @@ def _reported(
             failures.append(f"what is found cannot be cut or filleted as is given, and is left without: {error}")
     measurement = measured(task.points, plain, task.precision, hidden=here.hidden, finished=built)
     statistics = parameter_estimates(match)
+    acceptance = Acceptance(match=match, measurement=measurement, statistics=statistics, target=target)
+    try:
+        extrema = extrema_of(plain)
+    except DesignError:
+        # sections that end a search on the way cannot be drawn
+        extrema = {}
     return Fit(
         design=design,
         built=built,
@@ -330,19 +332,11 @@ def _reported(
         rank=statistics.rank,
         condition=statistics.condition,
         noise=measurement.noise_estimate.noise,
-        extrema=_extrema(plain),
+        extrema=extrema,
         tolerance=target.tolerance,
-        failures=(*failures_of(measurement, statistics, match, target), *failures),
-        notes=notes_of(notes, measurement, statistics, match, target),
+        failures=(*acceptance.failures(), *failures),
+        notes=(*notes, *acceptance.notes()),
         evaluations=match.evaluations,
         motion=here.motion,
         interrupted=match.interrupted,
     )
-
-
-def _extrema(built: Any) -> Mapping[str, int]:
-    """Extrema of curvature of what is built; none where sections that end a search on the way cannot be drawn."""
-    try:
-        return extrema_of(built)
-    except DesignError:
-        return {}

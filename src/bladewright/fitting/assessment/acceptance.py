@@ -1,7 +1,8 @@
 """What is asked of a match, and whether it may be trusted: its deviations against tolerance, noise and chord."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,7 @@ from bladewright.fitting.assessment.coverage import (
     foreign_edges,
     least_thickness,
     loose_ends,
+    past_points,
     shape_bands,
     uncovered_edges,
 )
@@ -81,58 +83,239 @@ def trusted_distance(match: Match) -> float:
     return (EXACT if match.maximum <= EXACT * match.model.chord else NEAR_EVERYWHERE) * match.model.chord
 
 
-def failures_of(
-    measurement: Measurement, statistics: ParameterEstimates, match: Match, target: MatchTarget
-) -> tuple[str, ...]:
-    """Why a match does not pass, each a sentence."""
-    inliers, distances, design = measurement.inliers, measurement.distances, match.design
-    outliers = ~inliers & ~measurement.faced & (measurement.set_aside == "")
-    off, open_ended = int(np.count_nonzero(outliers)), target.open and not match.interrupted
-    failures = ["the search was interrupted: this is the best design so far"] if match.interrupted else []
-    if off > LARGEST_OUTLIER_SHARE * len(distances):
-        failures.append(f"{off} of {len(distances)} points lie off the blade: is it one blade, and of this family?")
-    # points that are met as nearly as is asked are no part that is not found
-    outliers &= distances > (target.tolerance or NEAR_EVERYWHERE * match.model.chord)
-    together = _largest_group(measurement.footpoints, outliers)
-    if len(together) > LARGEST_GROUP * len(distances):
-        failures.append(
-            f"{len(together)} of {len(distances)} points beside each other lie up to "
-            f"{with_unit(design, np.max(distances[together]), 2)} off the blade: the shape is not found there, or they "
-            "belong to something else; leave them out, or give a start"
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Acceptance:
+    """What is said of a match: why it does not pass, and what else there is to know."""
+
+    match: Match
+    measurement: Measurement
+    statistics: ParameterEstimates
+    target: MatchTarget
+
+    def failures(self) -> Iterator[str]:
+        """Why the match does not pass, each a sentence."""
+        if self.match.interrupted:
+            yield "the search was interrupted: this is the best design so far"
+        yield from self._off_the_blade()
+        coarse = list(self._too_coarse())
+        yield from coarse
+        if self._nothing_asked:
+            yield from self._too_many_parameters()
+        if self._nothing_asked and not coarse:
+            # what a match that is not found misses widens its bands
+            yield from self._not_shown()
+        yield from self._partly_shown()
+
+    def notes(self) -> Iterator[str]:
+        """What else there is to know, each a sentence."""
+        measurement, chord = self.measurement, self.match.model.chord
+        if np.any(measurement.faced):
+            faced = f"{np.count_nonzero(measurement.faced)} of {measurement.outliers} outliers"
+            yield f"{faced} lie on the end faces: the sides are met without them"
+        if self.target.open and EXACT * chord < self._largest <= NEAR_EVERYWHERE * chord and self._is_systematic:
+            yield f"near enough to make, but {self._not_found}"
+        if measurement.dimension == 3 and self._mean > GROSS_DEVIATION[0] * chord:
+            yield f"a blade in other axes is met no nearer than this: {AXES_HINT}"
+        for name, (_, share) in self._uncovered_edges.items():
+            if share <= HALF_BLADE_WIDTH:
+                yield f"no point lies around the {name}: where it ends and how round it is are guessed"
+        for name, width in foreign_edges(self.match).items():
+            yield (
+                f"the {name} of the points is cut off, {self._length(width)} wide, and the edges of this family are "
+                "round: it stays within half of that (--family profile has blunt and sharp edges)"
+            )
+        if self._nothing_asked:
+            yield from self._bare_parts()
+        if self._loose_ends:
+            yield self._where_it_ends(self._loose_ends)
+        estimates = self.statistics.estimates
+        for words, names in (
+            ("the cloud does not determine", [each.path for each in estimates if not each.identified]),
+            ("on a bound:", [each.path for each in estimates if each.at_bound]),
+        ):
+            if names:
+                more = f" and {len(names) - LISTED_NAMES} more" if len(names) > LISTED_NAMES else ""
+                yield f"{words} {', '.join(names[:LISTED_NAMES])}{more}"
+
+    @property
+    def _nothing_asked(self) -> bool:
+        return self.target.open and not self.match.interrupted
+
+    @property
+    def _is_systematic(self) -> bool:
+        return self.match.noise_estimate.correlation > SHARED_VARIANCE and not self.match.interrupted
+
+    @cached_property
+    def _loose_ends(self) -> dict[str, float]:
+        return loose_ends(self.match)
+
+    @cached_property
+    def _uncovered_edges(self) -> dict[str, tuple[float, float]]:
+        return uncovered_edges(self.match)
+
+    @cached_property
+    def _bands(self) -> ShapeBands:
+        return shape_bands(self.match, self.statistics)
+
+    @property
+    def _mean(self) -> float:
+        return float(np.mean(self.measurement.distances[self.measurement.inliers]))
+
+    @property
+    def _largest(self) -> float:
+        return float(np.max(self.measurement.distances[self.measurement.inliers]))
+
+    def _length(self, metres: float, digits: int = 2) -> str:
+        return with_unit(self.match.design, metres, digits)
+
+    def _off_the_blade(self) -> Iterator[str]:
+        """Outliers that are too many, too many beside each other, or where chance does not put them."""
+        measurement, chord = self.measurement, self.match.model.chord
+        distances, count = measurement.distances, len(measurement.distances)
+        outliers = ~measurement.inliers & ~measurement.faced & (measurement.set_aside == "")
+        off = int(np.count_nonzero(outliers))
+        if off > LARGEST_OUTLIER_SHARE * count:
+            yield f"{off} of {count} points lie off the blade: is it one blade, and of this family?"
+        # points that are met as nearly as is asked are no part that is not found
+        outliers &= distances > (self.target.tolerance or NEAR_EVERYWHERE * chord)
+        together = _largest_group(measurement.footpoints, outliers)
+        if len(together) > LARGEST_GROUP * count:
+            yield (
+                f"{len(together)} of {count} points beside each other lie up to "
+                f"{self._length(np.max(distances[together]))} off the blade: the shape is not found there, or they "
+                "belong to something else; leave them out, or give a start"
+            )
+        if not self.target.open:
+            return
+        crowded = crowded_at_edges(outliers, measurement.footpoints)
+        places = {f"at the {name}": rows for name, rows in crowded.items()}
+        # points off a true surface lie to either side of it: the sign test (Dixon and Mood 1946)
+        inside, far = outliers & (measurement.deviations < 0.0), int(np.count_nonzero(outliers))
+        by_chance = binomtest(int(np.count_nonzero(inside)), max(far, 1), alternative="greater").pvalue
+        if not places and by_chance < SIGNIFICANCE:
+            places = {"inside the blade": inside}
+        for place, rows in places.items():
+            yield (
+                f"{np.count_nonzero(rows)} of {far} outliers lie {place}, up to "
+                f"{self._length(np.max(distances[rows]))} from its sides, more than by chance: is the shape not found "
+                "there, or the blade worn? Leave them out, give a start, or state a tolerance"
+            )
+
+    def _too_coarse(self) -> Iterator[str]:
+        """Whether a match is coarser than was asked for, or without a tolerance than is trusted."""
+        measurement, chord, tolerance = self.measurement, self.match.model.chord, self.target.tolerance
+        if tolerance is not None:
+            if self._largest > tolerance:
+                worst = int(np.argmax(np.where(measurement.inliers, measurement.distances, 0.0)))
+                yield (
+                    f"the largest deviation is {self._length(self._largest, 4)} ({measurement.regions[worst]}, point "
+                    f"{worst}), and {self._length(tolerance, 4)} were asked for"
+                )
+            return
+        for word, value, limit in zip(("mean", "largest"), (self._mean, self._largest), GROSS_DEVIATION, strict=True):
+            if value > limit * chord:
+                yield (
+                    f"the {word} deviation is {self._length(value, 4)}, {100 * value / chord:.2g} % of the chord, and "
+                    f"{100 * limit:.2g} % are allowed where no tolerance is stated: give more parameters"
+                )
+        if self.target.parameters is None and self._largest > NEAR_EVERYWHERE * chord and self._is_systematic:
+            yield self._not_found
+
+    @property
+    def _not_found(self) -> str:
+        rms, noise = self.match.rms * self.match.model.chord, self.match.noise_estimate.noise
+        return (
+            f"the shape is not found: deviations go on from point to point, {self._length(rms, 3)} rms where the "
+            f"cloud's own noise is {self._length(noise, 3)}; state the tolerance that is enough, a number of "
+            "parameters, or a start"
         )
-    crowded = crowded_at_edges(outliers, measurement.footpoints) if target.open else {}
-    places = {f"at the {name}": rows for name, rows in crowded.items()}
-    # points off a true surface lie to either side of it: the sign test (Dixon and Mood 1946)
-    inside, far = outliers & (measurement.deviations < 0.0), int(np.count_nonzero(outliers))
-    count = int(np.count_nonzero(inside))
-    if target.open and not places and binomtest(count, max(far, 1), alternative="greater").pvalue < SIGNIFICANCE:
-        places = {"inside the blade": inside}
-    failures += [
-        f"{np.count_nonzero(rows)} of {far} outliers lie {place}, up to "
-        f"{with_unit(design, np.max(distances[rows]), 2)} from its sides, more than by chance: is the shape not found "
-        "there, or the blade worn? Leave them out, give a start, or state a tolerance"
-        for place, rows in places.items()
-    ]
-    worst = int(np.flatnonzero(inliers)[np.argmax(distances[inliers])])
-    if target.tolerance is not None and distances[worst] > target.tolerance:
-        failures.append(
-            f"the largest deviation is {with_unit(design, distances[worst], 4)} ({measurement.regions[worst]}, point "
-            f"{worst}), and {with_unit(design, target.tolerance, 4)} were asked for"
-        )
-    coarse = [] if target.tolerance is not None else _too_coarse(distances[inliers], match, target)
-    failures += coarse
-    # parameters of ends that no row of points shows are a note
-    unknown = [each.path for each in statistics.estimates if not each.identified] if loose_ends(match) else []
-    known = len(statistics.estimates) - sum(path.startswith(("channel.", "flow_path.")) for path in unknown)
-    if open_ended and statistics.rank < known:
-        failures.append(
-            f"the points determine {statistics.rank} of the {len(statistics.estimates)} parameters: give more points, "
-            "a number of parameters, or a tolerance"
-        )
-    # what a match that is not found misses widens its bands
-    if open_ended and not coarse:
-        failures += _not_shown(shape_bands(match, statistics), match)
-    return (*failures, *_partly_shown(match))
+
+    def _too_many_parameters(self) -> Iterator[str]:
+        """Whether the points determine fewer parameters than there are."""
+        estimates, rank = self.statistics.estimates, self.statistics.rank
+        # parameters of ends that no row of points shows are a note
+        unknown = [each.path for each in estimates if not each.identified] if self._loose_ends else []
+        if rank < len(estimates) - sum(path.startswith(("channel.", "flow_path.")) for path in unknown):
+            yield (
+                f"the points determine {rank} of the {len(estimates)} parameters: give more points, a number of "
+                "parameters, or a tolerance"
+            )
+
+    @cached_property
+    def _limits(self) -> Reals:
+        """How well the shape is to be known at places (n,) where nothing is asked [m]."""
+        sides, edges = (each * self.match.model.chord for each in GROSS_DEVIATION)
+        return np.where(np.minimum(self._bands.u, 1.0 - self._bands.u) < BETWEEN_EDGES, edges, sides)
+
+    @cached_property
+    def _bare(self) -> dict[str, NDArray[np.bool_]]:
+        """Which places (n,) are at an edge or an end past all points there, while it is known elsewhere along it."""
+        bands = self._bands
+        known, found = bands.half_widths <= GROSS_DEVIATION[1] * self.match.model.chord, {}
+        for name, past in past_points(self.match, bands.side, bands.u, bands.v).items():
+            if name in EDGE_PARAMETERS:
+                away = np.abs(bands.u - EDGE_PARAMETERS[name])
+                found[name] = past & (away < BETWEEN_EDGES) & np.any(known[away == 0.0])
+            else:
+                away = np.abs(bands.v - END_PARAMETERS[name])
+                found[name] = past & known & (away < 0.5) & np.any(known[away == 0.0])
+        return found
+
+    def _not_shown(self) -> Iterator[str]:
+        """Where the shape is known less well than is trusted, and than one point there would show it."""
+        bands, chord = self._bands, self.match.model.chord
+        one_point = NORMAL_95 * self.match.noise_estimate.noise
+        limits = np.where(np.any(list(self._bare.values()), axis=0), np.inf, np.maximum(self._limits, one_point))
+        worst = int(np.argmax(bands.half_widths / limits))
+        if bands.half_widths[worst] > limits[worst]:
+            along = "" if self.measurement.dimension == 2 else f", v = {bands.v[worst]:.2g}"
+            yield (
+                f"the points do not show the {SIDES[bands.side[worst]]} side at u = {bands.u[worst]:.2g}{along}: it is "
+                f"known there to {self._length(bands.half_widths[worst])} either way (95 %), and "
+                f"{100 * limits[worst] / chord:.2g} % of the chord are allowed: is it a whole blade? Give more points "
+                "there, a start, a number of parameters or a tolerance"
+            )
+        allowed = max(GROSS_DEVIATION[0] * chord, one_point)
+        unknown = {name: gap for name, gap in self._loose_ends.items() if gap > allowed}
+        if unknown:
+            yield (
+                f"{self._where_it_ends(unknown)}, and {100 * allowed / chord:.2g} % of the chord are allowed: give "
+                "points there, hold hub and shroud, or state a tolerance"
+            )
+
+    def _where_it_ends(self, ends: Mapping[str, float]) -> str:
+        gaps = ", ".join(f"{self._length(gap)} at the {name}" for name, gap in ends.items())
+        return f"no row of points shows where the blade ends: it is known to {gaps} (95 %)"
+
+    def _bare_parts(self) -> Iterator[str]:
+        """Edges and ends without points on a part of the blade, where they are known less well than is trusted."""
+        bands = self._bands
+        for name, bare in self._bare.items():
+            rows = bare & (bands.half_widths > self._limits)
+            if np.any(rows):
+                letter, along = ("v", bands.v[rows]) if name in EDGE_PARAMETERS else ("u", bands.u[rows])
+                yield (
+                    f"no point shows the {name} from {letter} = {min(along):.2g} to {max(along):.2g}: it is known "
+                    f"there to {self._length(np.max(bands.half_widths[rows]))} either way (95 %)"
+                )
+
+    def _partly_shown(self) -> Iterator[str]:
+        """Why the points must be those of a part of a blade only, if anything shows it."""
+        feet, thickness = self.match.state.footpoints, least_thickness(self.match)
+        between = feet.side[self.match.rows & (np.minimum(feet.u, 1.0 - feet.u) > BETWEEN_EDGES)]
+        shares = np.bincount(between, minlength=2) / max(len(between), 1)
+        one_side = "is it one side of a blade alone? Give points of both"
+        if len(between) and np.min(shares) < MIN_SIDE_SHARE:
+            yield f"hardly a point lies on the {SIDES[np.argmin(shares)]} side: {one_side}"
+        elif thickness < SHEET_THICKNESS * self.match.model.chord:
+            thin = self._length(thickness, 3)
+            yield f"the blade is a sheet, no more than {thin} thick at a place of its span: {one_side}"
+        for name, (width, share) in self._uncovered_edges.items():
+            if share > HALF_BLADE_WIDTH:
+                yield (
+                    f"no point lies around the {name}, where the blade is still {self._length(width, 3)} wide, "
+                    f"{share:.0%} of its thickest: is it half a blade? Give the points of the whole"
+                )
 
 
 def _largest_group(feet: Footpoints, outliers: NDArray[np.bool_]) -> NDArray[np.intp]:
@@ -146,162 +329,3 @@ def _largest_group(feet: Footpoints, outliers: NDArray[np.bool_]) -> NDArray[np.
     _, index = cKDTree(points).query(points[rows], k=NEIGHBOURS[points.shape[1]] + 1)
     labels = groups(outliers[index], (np.cumsum(outliers) - 1)[index])
     return rows[labels == np.argmax(np.bincount(labels))]
-
-
-def _limits(bands: ShapeBands, match: Match) -> tuple[Reals, NDArray[np.bool_]]:
-    """How well the shape is to be known at places (n,) where nothing is asked [m], and where it is no failure if not.
-
-    That is at an edge, and at an end, past all points there, where elsewhere along it the shape is known.
-    """
-    sides, edges = (each * match.model.chord for each in GROSS_DEVIATION)
-    known = bands.half_widths <= edges
-    at_edge, at_end = np.zeros_like(known), np.zeros_like(known)
-    for end in EDGE_PARAMETERS.values():
-        at_edge |= (np.abs(bands.u - end) < BETWEEN_EDGES) & np.any(known[bands.u == end])
-        at_end |= (np.abs(bands.v - end) < 0.5) & np.any(known[bands.v == end])
-    bare = (bands.past_edge & at_edge) | (bands.past_end & at_end & known)
-    return np.where(np.minimum(bands.u, 1.0 - bands.u) < BETWEEN_EDGES, edges, sides), bare
-
-
-def _not_shown(bands: ShapeBands, match: Match) -> list[str]:
-    """Where a side, an edge or an end is known less well than is trusted, and than one point there would show it."""
-    chord, one_point = match.model.chord, NORMAL_95 * match.noise_estimate.noise
-    limits, bare = _limits(bands, match)
-    limits = np.where(bare, np.inf, np.maximum(limits, one_point))
-    worst = int(np.argmax(bands.half_widths / limits))
-    found = []
-    if bands.half_widths[worst] > limits[worst]:
-        place = f"u = {bands.u[worst]:.2g}"
-        place += "" if match.state.shape.exact is None else f", v = {bands.v[worst]:.2g}"
-        found.append(
-            f"the points do not show the {SIDES[bands.side[worst]]} side at {place}: it is known there to "
-            f"{with_unit(match.design, bands.half_widths[worst], 2)} either way (95 %), and "
-            f"{100 * limits[worst] / chord:.2g} % of the chord are allowed: is it a whole blade? Give more points "
-            "there, a start, a number of parameters or a tolerance"
-        )
-    ends = max(GROSS_DEVIATION[0] * chord, one_point)
-    unknown = {name: gap for name, gap in loose_ends(match).items() if gap > ends}
-    if unknown:
-        found.append(
-            f"{_loose_ends_message(match, unknown)}, and {100 * ends / chord:.2g} % of the chord are allowed: give "
-            "points there, hold hub and shroud, or state a tolerance"
-        )
-    return found
-
-
-def _bare_notes(bands: ShapeBands, match: Match) -> list[str]:
-    """Edges and ends without points on a part of the blade, where they are known less well than is trusted."""
-    limits, bare = _limits(bands, match)
-    near = np.minimum(bands.u, 1.0 - bands.u) < BETWEEN_EDGES
-    edges = [(name, np.abs(bands.u - end) < BETWEEN_EDGES, "v") for name, end in EDGE_PARAMETERS.items()]
-    ends = [(name, ~near & (np.abs(bands.v - end) < 0.5), "u") for name, end in END_PARAMETERS.items()]
-    found = []
-    for name, there, letter in edges + ends:
-        rows = np.flatnonzero(bare & (bands.half_widths > limits) & there)
-        if len(rows):
-            along, known = getattr(bands, letter)[rows], with_unit(match.design, np.max(bands.half_widths[rows]), 2)
-            found.append(
-                f"no point shows the {name} from {letter} = {min(along):.2g} to {max(along):.2g}: it is known there to "
-                f"{known} either way (95 %)"
-            )
-    return found
-
-
-def _too_coarse(kept: Reals, match: Match, target: MatchTarget) -> list[str]:
-    """Why a match without a tolerance is coarser than is trusted, if it is, by the inliers' distances (n,)."""
-    chord = match.model.chord
-    found = [
-        f"the {word} deviation is {with_unit(match.design, float(value), 4)}, {100 * value / chord:.2g} % of the "
-        f"chord, and {100 * limit:.2g} % are allowed where no tolerance is stated: give more parameters"
-        for word, limit, value in zip(("mean", "largest"), GROSS_DEVIATION, (np.mean(kept), np.max(kept)), strict=True)
-        if value > limit * chord
-    ]
-    if target.parameters is None and np.max(kept) > NEAR_EVERYWHERE * chord and _is_systematic(match):
-        found.append(_not_found_message(match))
-    return found
-
-
-def _is_systematic(match: Match) -> bool:
-    return match.noise_estimate.correlation > SHARED_VARIANCE and not match.interrupted
-
-
-def _not_found_message(match: Match) -> str:
-    rms, noise = (with_unit(match.design, each) for each in (match.rms * match.model.chord, match.noise_estimate.noise))
-    return (
-        f"the shape is not found: deviations go on from point to point, {rms} rms where the cloud's own noise "
-        f"is {noise}; state the tolerance that is enough, a number of parameters, or a start"
-    )
-
-
-def _partly_shown(match: Match) -> list[str]:
-    """Why the points must be those of a part of a blade only, if anything shows it."""
-    feet, thin = match.state.footpoints, least_thickness(match)
-    between = feet.side[match.rows & (np.minimum(feet.u, 1.0 - feet.u) > BETWEEN_EDGES)]
-    shares = np.bincount(between, minlength=2) / max(len(between), 1)
-    found = []
-    if len(between) and np.min(shares) < MIN_SIDE_SHARE:
-        found.append(
-            f"hardly a point lies on the {SIDES[np.argmin(shares)]} side: is it one side of a blade alone? Give points "
-            "of both"
-        )
-    elif thin < SHEET_THICKNESS * match.model.chord:
-        found.append(
-            f"the blade is a sheet, no more than {with_unit(match.design, thin)} thick at a place of its span: is it "
-            "one side of a blade alone? Give points of both"
-        )
-    found += [
-        f"no point lies around the {name}, where the blade is still {with_unit(match.design, wide)} wide, "
-        f"{share:.0%} of its thickest: is it half a blade? Give the points of the whole"
-        for name, (wide, share) in uncovered_edges(match).items()
-        if share > HALF_BLADE_WIDTH
-    ]
-    return found
-
-
-def _loose_ends_message(match: Match, ends: Mapping[str, float]) -> str:
-    gaps = ", ".join(f"{with_unit(match.design, gap, 2)} at the {name}" for name, gap in ends.items())
-    return f"no row of points shows where the blade ends: it is known to {gaps} (95 %)"
-
-
-def notes_of(
-    notes: tuple[str, ...],
-    measurement: Measurement,
-    statistics: ParameterEstimates,
-    match: Match,
-    target: MatchTarget,
-) -> tuple[str, ...]:
-    """What else there is to know, each a sentence."""
-    kept, chord = measurement.distances[measurement.inliers], match.model.chord
-    faced = int(np.count_nonzero(measurement.faced))
-    sentences = list(notes)
-    if faced:
-        sentences.append(
-            f"{faced} of {measurement.outliers} outliers lie on the end faces: the sides are met without them"
-        )
-    if target.open and EXACT * chord < np.max(kept) <= NEAR_EVERYWHERE * chord and _is_systematic(match):
-        sentences.append(f"near enough to make, but {_not_found_message(match)}")
-    if measurement.dimension == 3 and np.mean(kept) > GROSS_DEVIATION[0] * chord:
-        sentences.append(f"a blade in other axes is met no nearer than this: {AXES_HINT}")
-    sentences += [
-        f"no point lies around the {name}: where it ends and how round it is are guessed"
-        for name, (_, share) in uncovered_edges(match).items()
-        if share <= HALF_BLADE_WIDTH
-    ]
-    sentences += [
-        f"the {name} of the points is cut off, {with_unit(match.design, width, 2)} wide, and the edges of this family "
-        "are round: it stays within half of that (--family profile has blunt and sharp edges)"
-        for name, width in foreign_edges(match).items()
-    ]
-    if target.open and not match.interrupted:
-        sentences += _bare_notes(shape_bands(match, statistics), match)
-    loose = loose_ends(match)
-    if loose:
-        sentences.append(_loose_ends_message(match, loose))
-    doubtful = {
-        "the cloud does not determine": [each.path for each in statistics.estimates if not each.identified],
-        "on a bound:": [each.path for each in statistics.estimates if each.at_bound],
-    }
-    for words, names in doubtful.items():
-        more = f" and {len(names) - LISTED_NAMES} more" if len(names) > LISTED_NAMES else ""
-        sentences += [f"{words} {', '.join(names[:LISTED_NAMES])}{more}"] if names else []
-    return tuple(sentences)

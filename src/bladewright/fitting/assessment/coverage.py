@@ -17,8 +17,6 @@ from bladewright.fitting.matching.noise import EXACT, SIGNIFICANCE
 from bladewright.fitting.matching.search import Match
 from bladewright.numerics.robust import DEVIATION_OVER_MEDIAN
 from bladewright.nurbs.basis import Reals
-from bladewright.nurbs.curvature import curvature, surface_curvature
-from bladewright.nurbs.curve import Curve
 
 ROW_SPREAD_OF_NOISE = 2.0
 """spread of the points at an end, of the cloud's noise, from which they stand in no row: a noisy row is a row all the
@@ -31,11 +29,11 @@ COVERED_SHARE = 0.5
 """share of these parts that must have a point on the edge's arc; below it the edge is uncovered."""
 THICKNESS_SAMPLES = 25
 """places along a section among which it is thickest: half and twice change nothing (design/matching_constants.md)"""
-REACH = 8.0
-"""how far from the end of an edge points are compared, in its radii: a face as wide as the edge and as much of both
-sides, which are straight so far [-]; half and twice change nothing measured (design/matching_constants.md)."""
+REACH = 2.0
+"""how far from the end of an edge points are compared, in widths of the blade at `INSIDE`: a face and as much of both
+sides, which are straight so far [-]"""
 INSIDE = 0.05
-"""distance from an edge, in u, at which the sides show the direction across it [-]; half and twice change nothing
+"""distance from an edge, in u, at which the sides show width and direction across it [-]; half and twice change nothing
 measured (design/matching_constants.md)."""
 SHARES = (0.9, 0.5, 0.1)
 """widths from which a face and an arc are fitted, of the half height of their points: half and twice change nothing
@@ -58,10 +56,6 @@ class ShapeBands:
     v: Reals
     half_widths: Reals
     """(n,) half the 95 % intervals along the normals [m]"""
-    past_edge: NDArray[np.bool_]
-    """(n,) whether a place is further along its side than all points of that part of the span"""
-    past_end: NDArray[np.bool_]
-    """(n,) whether a place is nearer to an end than all points of that part of the chord"""
 
 
 def loose_ends(match: Match) -> dict[str, float]:
@@ -137,32 +131,23 @@ def shape_bands(match: Match, statistics: ParameterEstimates) -> ShapeBands:
     at = footpoints_at(np.zeros((len(u), dimension)), match.state.shape.sides, side, u, v)
     slopes = match.model.along(match.state.shape, at, at.normals, match.problem.paths)
     variances = np.einsum("nk,nk->n", slopes @ statistics.covariance, slopes)
-    past_edge, past_end = past_points(match, side, u, v)
-    return ShapeBands(
-        side=side,
-        u=u,
-        v=v,
-        half_widths=NORMAL_95 * np.sqrt(np.maximum(variances, 0.0)),
-        past_edge=past_edge,
-        past_end=past_end,
-    )
+    return ShapeBands(side=side, u=u, v=v, half_widths=NORMAL_95 * np.sqrt(np.maximum(variances, 0.0)))
 
 
-def past_points(
-    match: Match, side: NDArray[np.intp], u: Reals, v: Reals
-) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Whether places (n,) lie past all points of their side, outliers too: along the chord, and along the span.
+def past_points(match: Match, side: NDArray[np.intp], u: Reals, v: Reals) -> dict[str, NDArray[np.bool_]]:
+    """Which places (n,) are nearer to each edge and end than all points of their side, outliers too.
 
-    Compared are points of the same of five parts of the span, and of the chord.
+    Compared are points of the same of five parts of the span, and of the chord. Sections have no ends.
     """
-    feet, found = match.state.footpoints, []
-    for at, across, own, own_across in ((u, v, feet.u, feet.v), (v, u, feet.v, feet.u)):
-        low, high = (np.full(2 * PARTS, end) for end in (np.inf, -np.inf))
-        np.minimum.at(low, _part_of(feet.side, own_across), own)
-        np.maximum.at(high, _part_of(feet.side, own_across), own)
-        part = _part_of(side, across)
-        found.append((at < low[part]) | (at > high[part]))
-    return found[0], found[1]
+    feet, found = match.state.footpoints, {}
+    borders = {name: (end, u, v, feet.u, feet.v) for name, end in EDGE_PARAMETERS.items()}
+    if match.state.shape.exact is not None:
+        borders |= {name: (end, v, u, feet.v, feet.u) for name, end in END_PARAMETERS.items()}
+    for name, (end, at, across, own, own_across) in borders.items():
+        nearest = np.full(2 * PARTS, np.inf)
+        np.minimum.at(nearest, _part_of(feet.side, own_across), np.abs(own - end))
+        found[name] = np.abs(at - end) < nearest[_part_of(side, across)]
+    return found
 
 
 def _part_of(side: NDArray[np.intp], along: Reals) -> NDArray[np.intp]:
@@ -205,14 +190,9 @@ def foreign_edges(match: Match) -> dict[str, float]:
         inside = np.abs(at_end - INSIDE)
         across = _places(sides, upper_side, inside, feet.v) - _places(sides, 1 - upper_side, inside, feet.v)
         across -= np.sum(across * edge.normals, axis=-1)[:, None] * edge.normals
-        across /= np.sqrt(np.sum(across**2, axis=-1))[:, None]
-        along, height = (np.sum(edge.miss * each, axis=-1) for each in (edge.normals, across))
-        if isinstance(sides[0], Curve):
-            bends = [curvature(sides[0], end)]
-        else:
-            principal = surface_curvature(sides[0], end, np.median(feet.v))
-            bends = [principal.minimum, principal.maximum]
-        rows = np.flatnonzero((along * float(np.max(np.abs(bends))) > -REACH) & (np.abs(feet.u - end) < 0.5))
+        wide = np.sqrt(np.sum(across**2, axis=-1))
+        along, height = (np.sum(edge.miss * each, axis=-1) for each in (edge.normals, across / wide[:, None]))
+        rows = np.flatnonzero((along > -REACH * wide) & (np.abs(feet.u - end) < 0.5))
         # place, half width and turn of a face, and the slopes of both sides; place and radius of an arc, and these
         unknowns, round_unknowns = 6, 5
         if len(rows) <= 2 * unknowns:

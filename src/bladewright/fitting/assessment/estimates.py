@@ -64,43 +64,35 @@ def parameter_estimates(match: Match) -> ParameterEstimates:
     away. References: Bates and Watts 1988, section 2.3 (linear approximation); Seber and Wild 1989, section 2.1.4
     (weights that are not the inverse variances).
     """
-    problem, size = match.problem, match.problem.scales.size
+    problem, scales = match.problem, match.problem.scales
     slopes, excess, variance, left = _linearised(match)
-    across, values, turns = np.linalg.svd(slopes, full_matrices=False)
-    known = values > 1e-13 * values[0]
+    across, singular, turns = np.linalg.svd(slopes, full_matrices=False)
+    known = singular > 1e-13 * singular[0]
     # covariance of the rotated parameters at variance one: the identity where no point is weighed further
-    middle = across[:, known].T @ (excess[:, None] * across[:, known]) / np.outer(values[known], values[known])
-    scaled = variance * turns[known].T @ middle @ turns[known]
-    deviations = np.sqrt(np.diag(scaled))
-    deviations[np.any(np.abs(turns[~known]) > np.sqrt(np.finfo(float).eps), axis=0)] = np.inf
-    factor = float(stdtrit(left, 0.975))
-    estimates = []
-    for path, value, low, high, scale, spread in zip(
-        problem.paths,
-        problem.values_of(match.design),
-        problem.scales.low,
-        problem.scales.high,
-        size,
-        deviations,
-        strict=True,
-    ):
-        deviation, near = float(spread * scale), AT_BOUND * scale
-        estimates.append(
-            Estimate(
-                path=path,
-                value=float(value),
-                deviation=deviation,
-                low=float(value) - factor * deviation,
-                high=float(value) + factor * deviation,
-                identified=bool(spread < IDENTIFIED_SPREAD),
-                at_bound=bool(value - low < min(near, 0.1 * abs(value)) or high - value < near),
-            )
+    middle = across[:, known].T @ (excess[:, None] * across[:, known]) / np.outer(singular[known], singular[known])
+    covariance = variance * turns[known].T @ middle @ turns[known]
+    spread = np.sqrt(np.diag(covariance))
+    spread[np.any(np.abs(turns[~known]) > np.sqrt(np.finfo(float).eps), axis=0)] = np.inf
+    values, deviations = problem.values_of(match.design), spread * scales.size
+    reach, near = float(stdtrit(left, 0.975)) * deviations, AT_BOUND * scales.size
+    at_bound = (values - scales.low < np.minimum(near, 0.1 * np.abs(values))) | (scales.high - values < near)
+    estimates = tuple(
+        Estimate(
+            path=path,
+            value=float(values[i]),
+            deviation=float(deviations[i]),
+            low=float(values[i] - reach[i]),
+            high=float(values[i] + reach[i]),
+            identified=bool(spread[i] < IDENTIFIED_SPREAD),
+            at_bound=bool(at_bound[i]),
         )
+        for i, path in enumerate(problem.paths)
+    )
     return ParameterEstimates(
-        estimates=tuple(estimates),
-        covariance=scaled * np.outer(size, size),
+        estimates=estimates,
+        covariance=covariance * np.outer(scales.size, scales.size),
         rank=int(np.count_nonzero(np.sqrt(variance * np.diag(middle)) < 1.0)),
-        condition=float(values[0] / values[-1]) if values[-1] > 0.0 else np.inf,
+        condition=float(singular[0] / singular[-1]) if singular[-1] > 0.0 else np.inf,
     )
 
 
@@ -154,11 +146,9 @@ def _linearised(match: Match) -> tuple[Reals, Reals, float, float]:
     rows, count = cloud.residuals(match.state), len(cloud.points)
     slopes = cloud.slopes(match.state, problem.paths) * problem.scales.size
     excess = np.ones(len(rows))
-    if cloud.precision is not None:
-        own = cloud.roots**2 / np.where(cloud.precision > 0.0, cloud.precision, 1.0)
-        excess[:count] = np.where(own == 0.0, 1.0, own)
-        excess[count : count + len(cloud.ends.near)] = excess[cloud.ends.near]
     taking = cloud.roots > 0.0
+    excess[:count] = np.where(taking, cloud.roots**2 / np.where(cloud.precision > 0.0, cloud.precision, 1.0), 1.0)
+    excess[count : count + len(cloud.ends.near)] = excess[cloud.ends.near]
     places = neighbourhood_of(cloud.points, match.state.footpoints).places
     share = independent_share(places[taking], (rows / np.sqrt(excess))[:count][taking])
     points, parameters = int(np.count_nonzero(taking)), len(problem.paths)

@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bladewright.blade.native.blade import Blade
-from bladewright.fitting.assessment.result import REGIONS
+from bladewright.blade.native.cut_lines import in_meridian
+from bladewright.fitting.free_parameters import EDGES
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS, WallPoints, blade_ends_of
-from bladewright.fitting.matching.footpoints import Footpoints, nearest_footpoints
+from bladewright.fitting.matching.footpoints import EDGE_PARAMETERS, Footpoints, nearest_footpoints
 from bladewright.fitting.matching.noise import EDGE_BAND, NoiseEstimate, noise_of
 from bladewright.fitting.models.blunt_edges import edges_of, on_sides, sides_of
 from bladewright.fitting.models.model import ModelShape
@@ -94,29 +95,22 @@ def measured(
     noise_estimate = noise_of(points[rows], footpoints.part(rows), None if precision is None else precision[rows])
     inliers = np.zeros(len(points), dtype=bool)
     inliers[rows] = noise_estimate.inliers
-    noise_estimate = replace(noise_estimate, inliers=inliers)
     shape = ModelShape(design=None, sides=sides, edge_radius_margins=np.zeros(0), exact=exact)
-    ends = blade_ends_of(points, footpoints, shape, noise_estimate.inliers)
-    # points of end faces, few and far inside the sides, are outliers to these
-    faced = ~noise_estimate.inliers & (set_aside == "")
-    if np.any(faced):
-        faced &= blade_ends_of(points, footpoints, shape, np.ones(len(points), dtype=bool)).on_end_face
+    on_end_face = blade_ends_of(points, footpoints, shape, set_aside == "").on_end_face
     deviations = np.where(footpoints.heights < 0.0, -1.0, 1.0) * off
-    places = np.array(["upper", "lower"], dtype="<U13")[footpoints.side]
-    edge = np.where(
-        footpoints.u < EDGE_BAND, "leading edge", np.where(footpoints.u > 1.0 - EDGE_BAND, "trailing edge", "sides")
-    )
+    places = np.array(["upper", "lower"], dtype="<U20")[footpoints.side]
+    near_edges = [footpoints.u < EDGE_BAND, footpoints.u > 1.0 - EDGE_BAND]
     if "blunt" in edges_of(built):
         footpoints, on_face = on_sides(footpoints, edges_of(built))
-        places = np.where(on_face < 0, "leading_edge", np.where(on_face > 0, "trailing_edge", places))
+        places = np.select([on_face < 0, on_face > 0], EDGES, places)
     places = np.where(set_aside == "", places, set_aside)
-    past = np.any(footpoints.beyond != 0.0, axis=1) & (
+    past_end = np.any(footpoints.beyond != 0.0, axis=1) & (
         np.abs(np.sum(footpoints.miss * footpoints.beyond, axis=1)) > np.abs(footpoints.heights)
     )
-    regions = np.where(past, "ends", edge).astype(f"<U{max(map(len, REGIONS))}")
+    regions = np.select([past_end, *near_edges], ["ends", *EDGE_PARAMETERS], "sides")
     if isinstance(built, Blade):
         for (name, end), face in zip(END_PARAMETERS.items(), built.design.ends, strict=True):
-            rows = np.flatnonzero((ends.on_end_face | faced) & (np.abs(footpoints.v - end) < 0.5))
+            rows = np.flatnonzero(on_end_face & (np.abs(footpoints.v - end) < 0.5))
             outward = _off_wall(name, points[rows], built) * (1.0 if end else -1.0)
             nearer = np.abs(outward) < np.abs(deviations[rows])
             deviations[rows[nearer]] = outward[nearer]
@@ -126,26 +120,22 @@ def measured(
         footpoints=footpoints,
         deviations=deviations,
         regions=regions,
-        noise_estimate=noise_estimate,
-        faced=faced,
+        noise_estimate=replace(noise_estimate, inliers=inliers),
+        # points of end faces, few and far inside the sides, are outliers to these
+        faced=on_end_face & ~inliers & (set_aside == ""),
         set_aside=set_aside,
     )
 
 
-def meridional_places(points: Reals, built: Blade) -> Reals:
-    """Places (n, 2) of points (n, 3) in (x, r), or in (x, z) of a cascade."""
-    around = np.hypot(points[:, 1], points[:, 2]) if built.exact.mapping.revolved else points[:, 2]
-    return np.stack([points[:, 0], around], axis=-1)
-
-
 def _off_wall(name: str, points: Reals, built: Blade) -> Reals:
     """Signed distances (n,) [m] of points (n, 3) from hub or shroud."""
-    return WallPoints(name=name, places=meridional_places(points, built), spread=0.0).distances(built.exact)
+    places = in_meridian(points, built.exact.mapping.revolved)
+    return WallPoints(name=name, places=places, spread=0.0).distances(built.exact)
 
 
 def off_walls(points: Reals, built: Blade) -> dict[str, Reals]:
     """Distances (n,) [m] of points (n, 3) from the walls and faces of revolution that cuts and fillets have changed."""
-    places = meridional_places(points, built)
+    places = in_meridian(points, built.exact.mapping.revolved)
     return {name: np.sqrt(Descents((curve,)).nearest(places).square) for name, (curve, _) in built.walls.items()}
 
 
