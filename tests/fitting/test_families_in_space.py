@@ -15,7 +15,7 @@ from bladewright.fitting.families.blades import _alike, _kind_of
 from bladewright.fitting.families.first_parts import CAMBER_ANGLES, WEDGE_DIFFUSERS
 from bladewright.fitting.families.flow_path import ChannelCurves
 from bladewright.fitting.families.kinds import FAMILIES
-from bladewright.fitting.families.laws import counts_of, part_along_span, with_mean_laws
+from bladewright.fitting.families.laws import LAW_COUNT, part_along_span, part_of_laws, with_mean_laws
 from bladewright.fitting.families.section_shape import section_shape, unrolled
 from bladewright.fitting.families.sections import misfits
 from bladewright.fitting.fit import fit
@@ -25,7 +25,7 @@ from bladewright.fitting.matching.search import Task
 from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.fitting.models.blunt_edges import sides_of
 from bladewright.fitting.models.model import model_of
-from bladewright.section.laws import Span
+from bladewright.section.laws import Span, law_points, named_laws
 from bladewright.section.profiles.naca4 import Naca4
 from bladewright.section.wedge_diffuser import WedgeDiffuser, WedgeDiffuserSection
 from machines.sectioned import BLUNT, COMPRESSOR, DESIGNS, DIFFUSER
@@ -102,9 +102,10 @@ def test_a_part_of_laws_is_made_again_from_its_sections_and_its_numbers_of_contr
         numbers = with_mean_laws(part).parameters()
         angles = {name: float(at.values(getattr(part, name))[i]) for name in ("metal_angle_in", "metal_angle_out")}
         parts.append(with_mean_laws(part).changed({path: angles.get(path, value) for path, value in numbers.items()}))
-    again = part_along_span(parts, v, counts_of(part))
+    counts = {path: len(law_points(law)) for path, law in named_laws(part)}
+    again = part_along_span(parts, counts)
     assert again.metal_angle_in == pytest.approx(part.metal_angle_in, abs=1e-9)
-    assert counts_of(again) == counts_of(part)
+    assert {path: len(law_points(law)) for path, law in named_laws(again)} == counts
 
 
 def test_a_section_for_the_flow_from_the_other_side_has_its_edges_exchanged_and_its_sides_kept():
@@ -194,7 +195,7 @@ def test_contours_of_a_profile_that_tapers_keep_its_kind_of_edge_and_its_shape()
     profile = Naca4(stagger_angle=(30.0, 50.0), thickness=(0.12, 0.08), camber=0.04, camber_position=0.4)
     shapes = blades._shapes_of(profile)
     parts = [FAMILIES["profile"].through_points(each, blades.CONTOUR_POINTS) for each in shapes]
-    contours = part_along_span(parts, blades.START_SPANS, dict.fromkeys(counts_of(parts[0]), blades.LAW_COUNT))
+    contours = part_of_laws(parts)
     span, s = Span(np.linspace(0.0, 1.0, 5)), np.linspace(0.0, 1.0, 8001)
     own, given = (each.outline(span) for each in (contours, profile))
     assert own.trailing_edge.kind == "sharp"
@@ -203,7 +204,7 @@ def test_contours_of_a_profile_that_tapers_keep_its_kind_of_edge_and_its_shape()
         # a start for a search: a third of the nose's radius
         assert max(off) < 5e-3
     # one coordinate of each point slides it along the contour, and both of the two ends
-    assert len(free_parameters._along_contour(contours)) == blades.LAW_COUNT * (blades.CONTOUR_POINTS + 2)
+    assert len(free_parameters._along_contour(contours)) == LAW_COUNT * (blades.CONTOUR_POINTS + 2)
 
 
 def stood_in(distances, left_out=()):

@@ -18,8 +18,8 @@ from bladewright.fitting.free_parameters import EDGES, FreeParameters
 from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.model_selection import reshaping
 from bladewright.fitting.model_selection.elimination import LinearModel
-from bladewright.fitting.model_selection.reshaping import rich_structure
-from bladewright.fitting.model_selection.structure import reshaped, resizable_laws, richest, structure_of
+from bladewright.fitting.model_selection.reshaping import rich_structure, richest
+from bladewright.fitting.model_selection.structure import reshaped, resizable_laws, structure_of
 from bladewright.fitting.models.sectioned import PlanarModel, infeasibility
 from bladewright.section.camber_angle import CamberAngleSection
 from bladewright.section.laws import Span

@@ -1,8 +1,8 @@
 """From points in space to a blade from sections of a family."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, replace
-from itertools import chain, groupby
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,14 @@ from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, SHARED_VARIANCE, MatchTarget
 from bladewright.fitting.families.flow_path import ChannelCurves
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
-from bladewright.fitting.families.laws import counts_of, nearest_law, part_along_span, with_mean_laws, with_stations_of
+from bladewright.fitting.families.laws import (
+    LAW_COUNT,
+    MIDDLE,
+    SECTION_SPANS,
+    nearest_law,
+    part_of_laws,
+    with_mean_laws,
+)
 from bladewright.fitting.families.section_shape import PLACES, SectionShape, section_shape, unrolled
 from bladewright.fitting.families.sections import CONSIDERED, PROMISING, compared, criterion, is_far, misfits
 from bladewright.fitting.free_parameters import EDGES, FreeParameters, gauge_parameters
@@ -32,7 +39,6 @@ from bladewright.fitting.model_selection.selection import (
 from bladewright.fitting.model_selection.structure import reshaped, structure_of
 from bladewright.fitting.model_selection.structure_search import SETTLED_RICH
 from bladewright.fitting.models.model import ModelShape, model_of
-from bladewright.fitting.models.sectioned import infeasibility
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import Span, law_points
@@ -48,12 +54,6 @@ WALLS_HELD_NOTE = "hub and shroud are held as they are given"
 ROUNDNESS_PLACE, ROUNDER_RATIO = 0.04, 1.3
 """chord fraction from an edge at which its roundness is compared, and the ratio of half thicknesses (`ROUNDER_RATIO`)
 from which one edge is the rounder one."""
-START_SPANS: Reals = np.linspace(0.0, 1.0, 7)
-"""places along the span of the sections that a start is taken from"""
-FEASIBILITY_SPANS = Span(np.linspace(0.0, 1.0, 13))
-"""places along the span at which laws must leave sections a shape"""
-LAW_COUNT = 3
-"""control points of each law along the span where no structure is given"""
 CONTOUR_POINTS = 32
 """points of contours along the chord where no profile is near enough (design/matching.md)"""
 ALIKE = 1.1
@@ -64,8 +64,6 @@ CONFORMAL, UNROLLED = "m'-theta", "m-r*theta"
 """planes of stream surfaces in which sections are tried"""
 SAME_RADIUS = 1.02
 """ratio of the edges' radii below which both planes show the same sections but for their size, within 1 %"""
-MIDDLE = len(START_SPANS) // 2
-"""number of the section in the middle, by which structures are compared"""
 BAND = 0.15
 """half the width, in v, of the band of points that are taken for points of the section in its middle"""
 
@@ -81,15 +79,13 @@ def matched_blade(
     own = start is None and like is None
     if own and isinstance(task.free, FreeParameters):
         task = replace(task, free=replace(task.free, walls=True))
-    first: Any = start
+    first, structure = start, None if like is None else structure_of(like)
     if start is None:
         turn, first = _first_of(task, _closed_blades(task, header, like), kind, like, header)
         task = task.turned(turn)
-    elif like is not None:
-        first = reshaped(start, structure_of(like))
+    first = first if structure is None else reshaped(first, structure)
     first = task.free.applied(first) if isinstance(task.free, FreeParameters) else first
     check_bounds(first, task.free(first), task.bounds)
-    structure = None if like is None else structure_of(like)
     found, reason = selected_match(task, first, target, like=structure, guessed=start is None)
     misfit = is_far(found, target, NEAR_EVERYWHERE) and found.noise_estimate.correlation > SHARED_VARIANCE
     if kind.through_points is not None and own and misfit and target.parameters is None:
@@ -110,7 +106,7 @@ def _through_points(task: Task, kind: FitFamily, match: Match, target: MatchTarg
     some = replace(inliers.thinned(SEVERAL_POINTS), allow_outliers=False)
     try:
         parts = [kind.through_points(each, CONTOUR_POINTS) for each in _shapes_of(design.section)]
-        section = _laws(parts, dict.fromkeys(counts_of(parts[MIDDLE]), LAW_COUNT))
+        section = part_of_laws(parts)
         if section is None:
             return None
         first = replace(design, section=section)
@@ -121,12 +117,13 @@ def _through_points(task: Task, kind: FitFamily, match: Match, target: MatchTarg
 
 
 def _shapes_of(part: Any) -> list[SectionShape]:
-    """The shapes of a part's sections at START_SPANS, apart from where they stand."""
-    span = Span(START_SPANS)
+    """The shapes of a part's sections at SECTION_SPANS, apart from where they stand."""
+    span = Span(SECTION_SPANS)
     upper, lower = (np.real(side) for side in part.outline(span).points(PLACES))
+    turns = np.broadcast_to(np.real(part.stagger(span)), len(SECTION_SPANS))
     return [
         SectionShape(chord=1.0, stagger=float(turn), start=np.zeros(2), upper=u, lower=v, edge_radii=(0.0, 0.0))
-        for turn, u, v in zip(np.broadcast_to(np.real(part.stagger(span)), len(START_SPANS)), upper, lower, strict=True)
+        for turn, u, v in zip(turns, upper, lower, strict=True)
     ]
 
 
@@ -186,7 +183,7 @@ class _Frame:
     turn: float
     """[rad]"""
     shapes: list[SectionShape]
-    """at START_SPANS"""
+    """at SECTION_SPANS"""
 
 
 def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: DesignHeader) -> tuple[float, Design]:
@@ -196,10 +193,10 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
     blades, of each plane with theta counted from where these meet it best.
     """
     found = ChannelCurves(exact=closed.exact)
-    built = [closed.exact.section(float(v)) for v in START_SPANS]
+    built = [closed.exact.section(float(v)) for v in SECTION_SPANS]
     middle = section_shape(built[MIDDLE])
     found = replace(found, backwards=_backwards(found, kind, like, middle))
-    band = _band(task, closed, float(START_SPANS[MIDDLE]))
+    band = _band(task, closed, float(SECTION_SPANS[MIDDLE]))
     part = None if like is None else with_mean_laws(like.section)
     tried, refusal = list[tuple[Match, _Frame]](), FitError("no plane of sections was tried")
     for plane, turn in _planes(task, found, like, middle):
@@ -222,8 +219,7 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
         if any(frame.plane == each.plane and frame is not each for _, each in blades):
             continue
         parts = _along_span(kind, frame.shapes, chosen)
-        counts = dict.fromkeys(counts_of(parts[MIDDLE]), LAW_COUNT) if like is None else counts_of(like.section)
-        design = _blade_of(found, frame, kind.blade, _laws(parts, counts), like, header)
+        design = _blade_of(found, frame, kind.blade, part_of_laws(parts), like, header)
         try:
             blades.append((compared(few.turned(frame.turn), iter([design]))[0], frame))
         except FitError as error:
@@ -249,7 +245,7 @@ def _blade_of(
     linear = design.arrangement == "linear"
     place = [float(each.start[1]) / metre if linear else float(np.degrees(each.start[1])) for each in frame.shapes]
     if frame.plane == UNROLLED:
-        place = [each / r for each, r in zip(place, found.values("leading_edge", START_SPANS)[:, 1], strict=True)]
+        place = [each / r for each, r in zip(place, found.values("leading_edge", SECTION_SPANS)[:, 1], strict=True)]
     fields: dict[str, Any] = {
         "name": header.name,
         "length_unit": header.length_unit,
@@ -259,13 +255,12 @@ def _blade_of(
         "section": section,
     }
     name = "leading_edge_y" if linear else "leading_edge_theta"
-    given = LAW_COUNT if like is None else len(law_points(getattr(like, name)))
-    fields[name] = nearest_law(place, START_SPANS, given)
+    fields[name] = nearest_law(place, LAW_COUNT)
     if like is None:
         fields |= {edge: found.edge(edge, metre) for edge in EDGES}
         return blade(**fields, flow_path=found.flow_path(metre, revolved=not linear), plane=frame.plane)
     fields |= {edge: found.edge_like(edge, getattr(like, edge), metre) for edge in EDGES}
-    return with_stations_of(replace(like, **fields), like)
+    return replace(like, **fields)
 
 
 def _backwards(found: ChannelCurves, kind: FitFamily, like: Any, section: SectionShape) -> bool:
@@ -287,35 +282,6 @@ def _backwards(found: ChannelCurves, kind: FitFamily, like: Any, section: Sectio
         return False
     first, last = section.half(np.array([ROUNDNESS_PLACE, 1.0 - ROUNDNESS_PLACE]))
     return bool(last > ROUNDER_RATIO * first)
-
-
-def _laws(parts: list[Any], counts: Mapping[str, int]) -> Any:
-    """One part of laws: constants where a law, alone or together with those before it, leaves sections no shape."""
-    whole = _part_with_shape(parts, counts)
-    if whole is not None:
-        return whole
-    taken = dict.fromkeys(counts, 1)
-    found = _part_with_shape(parts, taken) or _part_with_shape([parts[MIDDLE]] * len(START_SPANS), taken)
-    # those of one row along the chord together: their numbers of control points change together too
-    for _, row in groupby(counts, key=lambda path: path.partition("[")[0]):
-        more = taken | {path: counts[path] for path in row}
-        wider = _part_with_shape(parts, more)
-        if wider is not None:
-            taken, found = more, wider
-    return found
-
-
-def _part_with_shape(parts: list[Any], counts: Mapping[str, int]) -> Any:
-    """One part of laws of so many control points each, or None where it has sections without a shape."""
-    try:
-        part = part_along_span(parts, START_SPANS, counts)
-        outline = part.outline(FEASIBILITY_SPANS)
-        outline.points(START_SPANS)
-        outline.check_limits([""] * len(FEASIBILITY_SPANS.v))
-        infeasibility(part, FEASIBILITY_SPANS)
-    except DesignError:
-        return None
-    return part
 
 
 def _planes(task: Task, found: ChannelCurves, like: Any, middle: SectionShape) -> list[tuple[str, float]]:

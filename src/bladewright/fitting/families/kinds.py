@@ -9,7 +9,6 @@ from bladewright.blade.design.row_design import Arrangement, LengthUnit
 from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.designs import Design
 from bladewright.fitting.families import (
-    part_laws,  # noqa: F401 - makes the laws of parts known
     segmented,
 )
 from bladewright.fitting.families.first_parts import (
