@@ -10,7 +10,7 @@ from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.designs import Point
 from bladewright.errors import DesignError
 from bladewright.fitting.assessment.acceptance import MatchTarget
-from bladewright.fitting.families.first_parts import profile_parts, through_points
+from bladewright.fitting.families.first_parts import through_points
 from bladewright.fitting.families.kinds import FAMILIES, DesignHeader
 from bladewright.fitting.families.section_shape import section_shape
 from bladewright.fitting.families.sections import _through_points, criterion, designs_of
@@ -131,7 +131,7 @@ def test_an_outline_of_points_follows_what_no_profile_of_a_kind_does():
     some, kind, header = task(section(STATOR)), FAMILIES["profile"], DesignHeader(name="found", length_unit="mm")
     shape = section_shape(section(STATOR).build())
     found = [
-        searched(some, each, rounds=1) for each in designs_of(kind, shape, profile_parts(shape, None)[:3], header, some)
+        searched(some, each, rounds=1) for each in designs_of(kind, shape, kind.first_parts(shape)[:3], header, some)
     ]
     target = MatchTarget(parameters=26)
     outline, _ = _through_points(some, kind, found, header, target, found[0])
@@ -148,37 +148,6 @@ def test_a_contour_has_points_on_the_corners_of_a_blunt_edge():
     part = through_points(shape, 40)
     assert (part.abscissas[0], part.ordinates[0]) == pytest.approx(tuple(shape.upper[-1]))
     assert (part.abscissas[-1], part.ordinates[-1]) == pytest.approx(tuple(shape.lower[-1]))
-
-
-def test_a_side_with_more_heights_keeps_a_tangent_that_its_edge_needs():
-    blade = replace(
-        STATOR,
-        stagger_angle=-30.62,
-        metal_angle_in=44.87,
-        metal_angle_out=-88.95,
-        skeleton="pseudo",
-        leading_edge_radius=0.01958,
-        leading_edge_stretch=2.992,
-        leading_edge_skew=-0.3472,
-        trailing_edge_radius=0.009281,
-        trailing_edge_stretch=0.7172,
-        trailing_edge_skew=-0.09825,
-        leading_edge_wedge=24.79,
-        trailing_edge_wedge=49.85,
-        suction_side="upper",
-        suction_tangent_in=0.06996,
-        suction_tangent_out=0.005125,
-        pressure_tangent_in=0.0842,
-        pressure_tangent_out=0.1255,
-        suction_heights=(0.107, 0.09263, 0.003362, -0.03285),
-        pressure_heights=(-0.03329, -0.05162, -0.06533, -0.06489),
-    )
-    design = section(blade)
-    for law in resizable_laws(design):
-        richer = reshaped(design, structure_of(design).resized(law.name, (8, 1))).section
-        richer.outline(ALONE)
-        assert richer.suction_tangent_out == blade.suction_tangent_out
-        assert (richer.pressure_tangent_out < blade.pressure_tangent_out) == (law.name == "section.pressure_heights")
 
 
 def test_a_section_on_too_short_a_tangent_is_crowded_before_it_is_refused():

@@ -1,17 +1,18 @@
 """From points in space to a blade from sections of a family."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from itertools import chain
 from typing import Any
 
 import numpy as np
 
 from bladewright.blade.design.sectioned import SectionedBlade
-from bladewright.designs import Design, Part, unit_at
+from bladewright.designs import Design, unit_at
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, SHARED_VARIANCE, MatchTarget
-from bladewright.fitting.families.flow_path import ChannelCurves
+from bladewright.fitting.families.first_parts import first_part
+from bladewright.fitting.families.flow_path import ClosedChannel
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
 from bladewright.fitting.families.laws import (
     LAW_COUNT,
@@ -81,7 +82,7 @@ def matched_blade(
         task = replace(task, free=replace(task.free, walls=True))
     first, structure = start, None if like is None else structure_of(like)
     if start is None:
-        turn, first = _first_of(task, _closed_blades(task, header, like), kind, like, header)
+        turn, first = _first_blade(task, kind, like, header)
         task = task.turned(turn)
     first = first if structure is None else reshaped(first, structure)
     first = task.free.applied(first) if isinstance(task.free, FreeParameters) else first
@@ -127,10 +128,11 @@ def _shapes_of(part: Any) -> list[SectionShape]:
     ]
 
 
-def _closed_blades(task: Task, header: DesignHeader, like: Any) -> Iterator[ModelShape]:
-    """Closed blades of the unified family that a task's points show: one that is searched, and one less near.
+def _first_blade(task: Task, kind: FitFamily, like: Any, header: DesignHeader) -> tuple[float, Design]:
+    """The family's first blade, from the sections of a closed blade of the unified family, and the turn of its frame.
 
-    Their sections and channels are all that is taken, so that they need not be fit to be built.
+    That is one that is searched, or where the family has no blade near it the one that the search began with, whose
+    edges miss no wall. Its sections and its channel are all that is taken, so that it need not be fit to be built.
     """
     points, row = task.thinned(THOROUGH_POINTS).points, header.row(like)
     first, outline = first_blade(points, name=header.name, length_unit=header.length_unit, **row)
@@ -140,22 +142,14 @@ def _closed_blades(task: Task, header: DesignHeader, like: Any) -> Iterator[Mode
     # searches hold edge radii at places along the span: between them they may be larger than the thickness holds
     smaller = (found.changed({path: share * radii[path] for path in radii}) for share in SMALLER_RADII)
     closed = next(filter(can_be_built, chain([found], smaller)), found)
-    # edges of the searched one may miss a wall
-    yield from (model_of(each).shape(each) for each in (closed, first))
-
-
-def _first_of(
-    task: Task, blades: Iterator[ModelShape], kind: FitFamily, like: Any, header: DesignHeader
-) -> tuple[float, Design]:
-    """What the first of the closed blades gives of which the family has a blade; FitError where none has."""
-    refusal = FitError("no closed blade was found near the points: give a start design")
-    for number, closed in enumerate(blades):
-        task.progress("first design of the family")
+    task.progress("first design of the family")
+    try:
+        return _first(task, model_of(closed).shape(closed), kind, like, header)
+    except FitError as refusal:
         try:
-            return _first(task, closed, kind, like, header)
-        except FitError as error:
-            refusal = refusal if number else error
-    raise refusal
+            return _first(task, model_of(first).shape(first), kind, like, header)
+        except FitError:
+            raise refusal from None
 
 
 def _band(task: Task, closed: ModelShape, v: float) -> Reals:
@@ -192,7 +186,7 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
     Planes and kinds of section that those in the middle hardly tell apart are told apart by a short search of whole
     blades, of each plane with theta counted from where these meet it best.
     """
-    found = ChannelCurves(exact=closed.exact)
+    found = ClosedChannel(exact=closed.exact)
     built = [closed.exact.section(float(v)) for v in SECTION_SPANS]
     middle = section_shape(built[MIDDLE])
     found = replace(found, backwards=_backwards(found, kind, like, middle))
@@ -218,7 +212,7 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
             break
         if any(frame.plane == each.plane and frame is not each for _, each in blades):
             continue
-        parts = _along_span(kind, frame.shapes, chosen)
+        parts = _along_span(frame.shapes, chosen)
         design = _blade_of(found, frame, kind.blade, part_of_laws(parts), like, header)
         try:
             blades.append((compared(few.turned(frame.turn), iter([design]))[0], frame))
@@ -237,7 +231,7 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
 
 
 def _blade_of(
-    found: ChannelCurves, frame: _Frame, blade: type[SectionedBlade], section: Any, like: Any, header: DesignHeader
+    found: ClosedChannel, frame: _Frame, blade: type[SectionedBlade], section: Any, like: Any, header: DesignHeader
 ) -> Any:
     """The blade of sections that stand where those of a closed blade do."""
     design = found.exact.design
@@ -263,7 +257,7 @@ def _blade_of(
     return replace(like, **fields)
 
 
-def _backwards(found: ChannelCurves, kind: FitFamily, like: Any, section: SectionShape) -> bool:
+def _backwards(found: ClosedChannel, kind: FitFamily, like: Any, section: SectionShape) -> bool:
     """Whether the flow comes from the other side than the closed blade was found for.
 
     Points do not show it: `like` does. Without it wedges open downstream, other blades lead along x, and where they
@@ -284,7 +278,7 @@ def _backwards(found: ChannelCurves, kind: FitFamily, like: Any, section: Sectio
     return bool(last > ROUNDER_RATIO * first)
 
 
-def _planes(task: Task, found: ChannelCurves, like: Any, middle: SectionShape) -> list[tuple[str, float]]:
+def _planes(task: Task, found: ClosedChannel, like: Any, middle: SectionShape) -> list[tuple[str, float]]:
     """The planes in which sections may be those of the family, and the turns about x of the machine there [rad].
 
     Where radii differ, planes do not show the same shapes, and that of r theta neither wherever theta is counted from:
@@ -302,14 +296,14 @@ def _planes(task: Task, found: ChannelCurves, like: Any, middle: SectionShape) -
     return own if task.bounds else [*own, (UNROLLED, turn)]
 
 
-def _along_span(kind: FitFamily, shapes: Sequence[SectionShape], middle: Match) -> list[Any]:
+def _along_span(shapes: Sequence[SectionShape], middle: Match) -> list[Any]:
     """Parts at places along the span: that of the middle, which was searched, changed as its shapes say.
 
     Angles change by what the first parts of the shapes there and in the middle differ, and lengths by their ratio.
     """
     design: Any = middle.design
     part: Any = design.section
-    firsts = [kind.first_parts(shape, part)[0].parameters() for shape in shapes]
+    firsts = [first_part(part, shape).parameters() for shape in shapes]
 
     def changed(path: str, value: float, first: float, there: float) -> float:
         unit = unit_at(part, path)
@@ -337,20 +331,7 @@ def _matched(kind: FitFamily, shape: SectionShape, points: Reals, parts: Sequenc
     )
     tried = compared(task, designs)[:CONSIDERED]
     found = [searched(task, each.design, rounds=QUICK_ROUNDS, fading=True) for each in tried]
-    kinds = dict[Any, Match]()
-    for number in np.argsort(misfits(found), kind="stable"):
-        design: Any = found[number].design
-        kinds.setdefault(_kind_of(design.section), found[number])
-    nearest = list(kinds.values())
-    return [nearest[number] for number in _alike(nearest)]
-
-
-def _kind_of(part: Part) -> tuple[Any, ...]:
-    """What a part is besides its numbers: its class, its words, what it has none of, and those of the parts in it."""
-    values = (getattr(part, each.name) for each in fields(part))
-    return type(part), *(
-        _kind_of(each) if isinstance(each, Part) else each for each in values if isinstance(each, str | Part | None)
-    )
+    return [found[number] for number in _alike(found)]
 
 
 def _alike(matches: Sequence[Match]) -> list[int]:
