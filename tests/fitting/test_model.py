@@ -160,7 +160,7 @@ def test_residuals_change_as_central_differences_say(name):
 
 def test_a_blade_with_a_blunt_edge_moves_as_central_differences_say():
     design = BLUNT
-    model = model_of(design, 1e-3)
+    model = model_of(design, 1e-7)
     shape, path = model.shape(design), next(path for path in design.parameters() if "metal_angle_in" in path)
     on = nearest_footpoints(shape.sides[0](*np.random.default_rng(4).random((2, 60))), shape.sides)
     ends = [

@@ -91,6 +91,8 @@ def model_of(design: Design, tolerance: float | None = None) -> Model:  # noqa: 
 
 def place_rates(on: Side, rates: Reals, u: Reals, v: Reals) -> Reals:
     """Derivatives (n, k, d) of homogeneous places by those (k, ..., d) of the control points of what they lie on."""
+    if len(u) == 0:
+        return np.zeros((0, len(rates), rates.shape[-1]))
     matrix = collocation(on, u, v)
     columns = np.moveaxis(rates, 0, -2).reshape(matrix.shape[1], -1)
     return np.asarray(matrix @ columns).reshape(len(u), len(rates), rates.shape[-1])
@@ -146,22 +148,23 @@ class SectionModel(Model):
 
     def along(self, shape: ModelShape, footpoints: Footpoints, directions: Reals, paths: Sequence[str]) -> Reals:
         found = np.empty((len(footpoints.u), len(paths)))
-        for number, (side, rates) in enumerate(zip(shape.sides, self._rates(shape, paths)[:2], strict=True)):
+        for number, (side, rates) in enumerate(zip(shape.sides, self.rates(shape, paths)[:2], strict=True)):
             rows = np.flatnonzero(footpoints.side == number)
-            moved = place_rates(side, rates, footpoints.u[rows], footpoints.v[rows])
+            u, v = footpoints.u[rows], footpoints.v[rows]
+            moved = place_rates(side, rates, u, v)
             if side.weights is not None:
-                weight = (collocation(side, footpoints.u[rows]) @ side.weights)[:, None, None]
+                weight = place_rates(side, side.weights[None, :, None], u, v)
                 moved = (moved[..., :-1] - footpoints.points[rows, None] * moved[..., -1:]) / weight
             found[rows] = np.einsum("nkd,nd->nk", moved, directions[rows])
         return found
 
     def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
-        return self._rates(shape, paths)[2]
+        return self.rates(shape, paths)[2]
 
     def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
-        return self._rates(shape, paths)[3]
+        return self.rates(shape, paths)[3]
 
-    def _rates(self, shape: ModelShape, paths: Sequence[str]) -> list[Reals]:
+    def rates(self, shape: ModelShape, paths: Sequence[str]) -> list[Reals]:
         """Derivatives (k, ...) of all parts by parameters, kept for the next that asks for them."""
         known, asked, rates = self._last
         if known is not shape or asked != tuple(paths):
