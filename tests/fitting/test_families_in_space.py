@@ -12,6 +12,7 @@ from bladewright.errors import FitError
 from bladewright.fitting import free_parameters
 from bladewright.fitting.families import blades
 from bladewright.fitting.families.blades import _alike
+from bladewright.fitting.families.first_parts import through_points
 from bladewright.fitting.families.flow_path import ClosedChannel
 from bladewright.fitting.families.kinds import FAMILIES
 from bladewright.fitting.families.laws import LAW_COUNT, part_along_span, part_of_laws, with_mean_laws
@@ -197,7 +198,7 @@ def test_parts_along_the_span_are_the_searched_one_where_shapes_are_alike_and_tu
 def test_contours_of_a_profile_that_tapers_keep_its_kind_of_edge_and_its_shape():
     profile = Naca4(stagger_angle=(30.0, 50.0), thickness=(0.12, 0.08), camber=0.04, camber_position=0.4)
     shapes = blades._shapes_of(profile)
-    parts = [FAMILIES["profile"].through_points(each, blades.CONTOUR_POINTS) for each in shapes]
+    parts = [through_points(each, blades.CONTOUR_POINTS) for each in shapes]
     contours = part_of_laws(parts)
     span, s = Span(np.linspace(0.0, 1.0, 5)), np.linspace(0.0, 1.0, 8001)
     own, given = (each.outline(span) for each in (contours, profile))

@@ -11,7 +11,7 @@ from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.designs import Design, unit_at
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, SHARED_VARIANCE, MatchTarget
-from bladewright.fitting.families.first_parts import first_part
+from bladewright.fitting.families.first_parts import first_part, through_points
 from bladewright.fitting.families.flow_path import ClosedChannel
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
 from bladewright.fitting.families.laws import (
@@ -23,7 +23,15 @@ from bladewright.fitting.families.laws import (
     with_mean_laws,
 )
 from bladewright.fitting.families.section_shape import PLACES, SectionShape, section_shape
-from bladewright.fitting.families.sections import CONSIDERED, PROMISING, compared, criterion, is_far, misfits
+from bladewright.fitting.families.sections import (
+    CONSIDERED,
+    PROMISING,
+    compared,
+    criterion,
+    inliers_of,
+    is_far,
+    misfits,
+)
 from bladewright.fitting.free_parameters import EDGES, FreeParameters, gauge_parameters
 from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.matching.scales import check_bounds, part_range
@@ -85,24 +93,21 @@ def matched_blade(
     check_bounds(first, task.free(first), task.bounds)
     found, reason = selected_match(task, first, target, like=structure, guessed=start is None)
     misfit = is_far(found, target, NEAR_EVERYWHERE) and found.noise_estimate.correlation > SHARED_VARIANCE
-    if kind.through_points is not None and own and misfit and target.parameters is None:
-        outlined = _through_points(task, kind, found, target)
+    if kind.has_contours and own and misfit and target.parameters is None:
+        outlined = _through_points(task, found, target)
         found, reason = min(filter(None, ((found, reason), outlined)), key=lambda each: criterion(each[0], target))
     return found, "; ".join(filter(None, (reason, "" if own else WALLS_HELD_NOTE)))
 
 
-def _through_points(task: Task, kind: FitFamily, match: Match, target: MatchTarget) -> tuple[Match, str] | None:
+def _through_points(task: Task, match: Match, target: MatchTarget) -> tuple[Match, str] | None:
     """The match by contours that begin as the sections of another match, and why it ends where no target is met.
 
-    None where it has no shape. Outliers are those of the other match: contours that have not found an edge yet would
-    leave its points out.
+    None where it has no shape.
     """
-    assert kind.through_points is not None  # noqa: S101 - asked of the family that has them
     design: Any = match.design
-    inliers = task.thinned(len(match.rows)).part(np.flatnonzero(match.rows))
-    some = replace(inliers.thinned(SEVERAL_POINTS), allow_outliers=False)
+    some = inliers_of(task, match, SEVERAL_POINTS)
     try:
-        parts = [kind.through_points(each, CONTOUR_POINTS) for each in _shapes_of(design.section)]
+        parts = [through_points(each, CONTOUR_POINTS) for each in _shapes_of(design.section)]
         section = part_of_laws(parts)
         if section is None:
             return None

@@ -6,13 +6,12 @@ from functools import singledispatch
 from typing import Any
 
 import numpy as np
-from scipy.optimize import lsq_linear
 
 from bladewright.fitting.families.section_shape import PLACES, SectionShape
 from bladewright.fitting.matching.scales import part_range
 from bladewright.fitting.models.sectioned import SINGLE_SECTION
 from bladewright.nurbs.basis import Reals
-from bladewright.section.camber_angle import ANGLE, HALF_THICKNESS, CamberAngle
+from bladewright.section.camber_angle import ANGLE, CamberAngle
 from bladewright.section.curvature_meanline import CurvatureMeanline
 from bladewright.section.laws import law_basis
 from bladewright.section.profiles.c4 import C4
@@ -50,20 +49,14 @@ CAMBER_ANGLES = tuple(
 
 @first_part.register
 def _(like: CamberAngle, shape: SectionShape) -> CamberAngle:
-    """By least squares of its angle and of its half thickness."""
+    """By least squares of its angle, and the half thickness at the places of its control points."""
     # fractions of the meridional extent
     fraction = PLACES - shape.camber(PLACES) * np.tan(shape.stagger)
     rows = law_basis(len(like.camber_angle), np.clip(fraction, 0.0, 1.0))
     angles = np.degrees(shape.stagger + np.linalg.lstsq(rows, shape.angles(PLACES), rcond=None)[0])
-    half = shape.half(PLACES)
     outline = replace(like, half_thickness=(0.01,) * len(like.half_thickness)).outline(SINGLE_SECTION)
-    weights, places = (np.real(law.controls)[0] for law in (outline.weights, outline.places))
-    rows = law_basis(len(weights), np.linspace(0.0, 1.0, 2 * len(half)))
-    at, shares = rows @ places / (rows @ weights), rows * weights / (rows @ weights)[:, None]
-    free = shares[:, 1 : 1 + len(like.half_thickness)]
-    # beside a round edge the half thickness is far above what is left of it further on
-    limits = 0.1 * float(np.max(half)), 0.99 * HALF_THICKNESS.high
-    heights = lsq_linear(free, np.interp(at, fraction, half), bounds=limits).x
+    places = np.real(outline.places.controls)[0][1 : 1 + len(like.half_thickness)]
+    heights = np.maximum(np.interp(places, fraction, shape.half(PLACES)), 0.05 * shape.thickest[0])
     clipped = np.clip(angles, 0.99 * ANGLE.low, 0.99 * ANGLE.high)
     return replace(like, camber_angle=tuple(clipped.tolist()), half_thickness=tuple(heights.tolist()))
 
@@ -121,28 +114,13 @@ def _thickness(shape: SectionShape, law: Any) -> dict[str, Any]:
         2.0 * r * (given.get(f"{edge}_ratio") or usual)
         for r, (edge, usual) in zip(shape.radii, RATIOS.items(), strict=True)
     ]
-    first, tail, last, end = (float(each) for each in shape.half(np.array([0.03, 0.85, 0.95, 0.985])))
+    last = float(shape.half(np.array([0.95]))[0])
     known = {
         "maximum_thickness": maximum,
         "maximum_thickness_at": float(np.clip(at, 0.15, 0.8)),
         "leading_edge_thickness": ends[0],
         "trailing_edge_thickness": 2.0 * last if given.get("trailing_edge") == "blunt" else ends[1],
     }
-    if isinstance(law, ModifiedNaca):
-        # the radius of the leading edge is 1.1019 (thickness I / 6)^2 (NACA Report 492)
-        index = 6.0 * np.sqrt(shape.radii[0] / 1.1019) / maximum
-        known |= {
-            "leading_edge_index": float(np.clip(index, 1.0, 11.0)),
-            "trailing_edge_slope": float(np.clip(10.0 * (last - tail), -1.0, -0.01)),
-            "trailing_edge_thickness": 2.0 * end,
-        }
-    if isinstance(law, QuarticSpline):
-        # this law works with its maximum near 0.3
-        known |= {
-            "maximum_thickness_at": 0.3,
-            "leading_edge_thickness": 2.0 * first,
-            "trailing_edge_thickness": 2.0 * last,
-        }
     for name in ("leading_edge_thickness", "trailing_edge_thickness"):
         known[name] = float(np.clip(known[name], 0.02 * maximum, 0.6 * maximum))
     return {name: value for name, value in known.items() if given.get(name) is not None}

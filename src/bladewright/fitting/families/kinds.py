@@ -16,7 +16,6 @@ from bladewright.fitting.families.first_parts import (
     WEDGE_DIFFUSERS,
     first_part,
     suction_pressures,
-    through_points,
 )
 from bladewright.fitting.families.section_shape import SectionShape
 from bladewright.nurbs.basis import Reals
@@ -59,9 +58,8 @@ class FitFamily:
     section: type[PlanarSection]
     structures: Callable[[SectionShape], Sequence[Any]]
     """parts whose structures are tried near a section where none is given"""
-    through_points: Callable[[SectionShape, int], Any] | None = None
-    """the part through so many points of a section, where the family has one that follows any outline"""
-
+    has_contours: bool = False
+    """whether one of its kinds, a contour through points, follows any outline"""
     contour_shape: Callable[[Reals], SectionShape | None] | None = None
     """the section of points (n, 2) in order around it, where the family takes it from the points themselves"""
 
@@ -82,7 +80,7 @@ FAMILIES = {
         FitFamily("suction-pressure", SuctionPressureSection, suction_pressures),
         FitFamily("wedge-diffuser", WedgeDiffuserSection, lambda _: WEDGE_DIFFUSERS),
         FitFamily("camber-angle", CamberAngleSection, lambda _: CAMBER_ANGLES),
-        FitFamily("profile", ProfileSection, lambda _: PROFILES, through_points=through_points),
+        FitFamily("profile", ProfileSection, lambda _: PROFILES, has_contours=True),
         FitFamily("segmented", SegmentedSection, segmented.structures, contour_shape=segmented.contour_shape),
     )
 }

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import singledispatch
 from typing import Any, final
 
 import numpy as np
@@ -28,7 +29,7 @@ from bladewright.fitting.models.model import (
     model_of,
     stepped_rates,
 )
-from bladewright.numerics.elementary import Array, radians
+from bladewright.numerics.elementary import Array, concatenated, radians
 from bladewright.nurbs.basis import Reals, greville
 from bladewright.nurbs.curve import Curve
 from bladewright.section.camber_angle import CamberAngle
@@ -38,7 +39,6 @@ from bladewright.section.laws import Span
 from bladewright.section.native import DEGREE, interpolated_along_u, side_knots_for
 from bladewright.section.outline import Edge, EdgeDerivatives
 from bladewright.section.planar import PlanarSection
-from bladewright.section.segmented.outline import SegmentedOutline
 from bladewright.section.segmented.part import Segmented
 from bladewright.section.suction_pressure.edges import MAX_OPENING, opening
 from bladewright.section.suction_pressure.limits import CHECKED_AT, gaps
@@ -174,8 +174,7 @@ def _flow_path_margins(exact: Any, moved: Any) -> Array:
     if isinstance(placement, PrescribedEdges):
         for _, place in placement.intersections(ENDS):
             rows += [MET_MARGIN - EXTENSION - place, place - 1.0 - EXTENSION + MET_MARGIN]
-    shape = np.broadcast_shapes(*[each.shape[:-1] for each in rows])
-    return np.concatenate([np.broadcast_to(each, (*shape, each.shape[-1])) for each in rows], axis=-1)
+    return concatenated(rows, axis=-1)
 
 
 @model_of.register
@@ -184,43 +183,46 @@ def _(design: SectionedBlade, tolerance: float | None = None) -> Model:
         return SectionedModel(design, tolerance)
 
 
-def infeasibility(part: Any, span: Span) -> Array:
+@singledispatch
+def infeasibility(part: Any, span: Span) -> Array:  # noqa: ARG001 - most parts are refused on their way by nothing
     """By how much sections at places along the span are nearer to a refusal than they may be (..., c).
 
     Values above 0 violate the margin. Raises DesignError where the sections are refused already.
     """
-    if isinstance(part, Segmented):
-        return _turning_back(part.outline(span))
-    if isinstance(part, CamberAngle):
-        steep = [each for each in part.outline(span).bends if each is not None]
-        return np.concatenate(np.broadcast_arrays(*steep), axis=-1) / STEEPEST - (1.0 - STEEP_MARGIN)
-    if not isinstance(part, SuctionPressure):
-        return np.zeros(0)
+    return np.zeros(0)
+
+
+@infeasibility.register
+def _(part: Segmented, span: Span) -> Array:
+    """By how much control points of segments lie ahead of the ones before them; those at the nose may."""
+    rows = []
+    for side in part.outline(span).sides:
+        for number, controls in enumerate(side.controls):
+            x = controls[..., 2 if number == 0 else 0 :, 0]
+            rows.append(x[..., :-1] - x[..., 1:])
+    found = concatenated(rows, axis=-1)
+    return found.reshape(*found.shape[:-2], -1)
+
+
+@infeasibility.register
+def _(part: CamberAngle, span: Span) -> Array:
+    steep = [each for each in part.outline(span).bends if each is not None]
+    return concatenated(steep, axis=-1) / STEEPEST - (1.0 - STEEP_MARGIN)
+
+
+@infeasibility.register
+def _(part: SuctionPressure, span: Span) -> Array:
     edges = edge_points(part, span)
     rows = [_opening_excess(part, edge, span) for edge in ("leading_edge", "trailing_edge")]
     suction, pressure = sides(part, span, *edges)
     rows.append(SMALLEST_GAP - (gaps(suction, pressure) if part.suction_side == "upper" else gaps(pressure, suction)))
     for side in (suction, pressure):
         rows += [SLOWEST_PACE - side.own_parameter(end, CHECKED_AT, 1) for end in (0, 1)]
-    shape = np.broadcast_shapes(*[each.shape[:-2] for each in rows])
-    return np.concatenate([np.broadcast_to(each, (*shape, *each.shape[-2:])).reshape(*shape, -1) for each in rows], -1)
-
-
-def _turning_back(outline: SegmentedOutline) -> Array:
-    """By how much control points of segments lie ahead of the ones before them; those at the nose may (..., c)."""
-    rows = []
-    for side in outline.sides:
-        for number, controls in enumerate(side.controls):
-            x = controls[..., 2 if number == 0 else 0 :, 0]
-            rows.append(x[..., :-1] - x[..., 1:])
-    shape = np.broadcast_shapes(*[each.shape[:-1] for each in rows])
-    return np.concatenate(
-        [np.broadcast_to(each, (*shape, each.shape[-1])).reshape(*shape[:-1], -1) for each in rows], -1
-    )
+    return concatenated([each.reshape(*each.shape[:-2], -1) for each in rows], axis=-1)
 
 
 def _opening_excess(part: SuctionPressure, edge: str, span: Span) -> Array:
-    """The same for the two ellipses of an edge (..., m, 2), by their opening."""
+    """By how much the opening of the two ellipses of an edge is larger than it may be (..., m, 2)."""
     stretch, skew, wedge = (span.values(getattr(part, f"{edge}_{each}")) for each in ("stretch", "skew", "wedge"))
     ratios = [opening(stretch * (1.0 + sign * skew), radians(wedge)) for sign in (1.0, -1.0)]
     return np.stack(np.broadcast_arrays(*ratios), axis=-1) - (MAX_OPENING[part.edges] - OPENING_MARGIN)
