@@ -22,7 +22,7 @@ from bladewright.fitting.families.laws import (
     part_of_laws,
     with_mean_laws,
 )
-from bladewright.fitting.families.section_shape import PLACES, SectionShape, section_shape
+from bladewright.fitting.families.section_shape import PLACES, SectionShape, section_shape, unrolled
 from bladewright.fitting.families.sections import (
     CONSIDERED,
     PROMISING,
@@ -34,6 +34,7 @@ from bladewright.fitting.families.sections import (
 )
 from bladewright.fitting.free_parameters import EDGES, FreeParameters, gauge_parameters
 from bladewright.fitting.initial_guess.blade import first_blade
+from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.scales import check_bounds, part_range
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, can_be_built, searched
 from bladewright.fitting.model_selection.selection import (
@@ -46,7 +47,8 @@ from bladewright.fitting.model_selection.selection import (
 )
 from bladewright.fitting.model_selection.structure import reshaped, structure_of
 from bladewright.fitting.model_selection.structure_search import SETTLED_RICH
-from bladewright.fitting.models.model import model_of
+from bladewright.fitting.models.model import ModelShape, model_of
+from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import Span, law_points
 from bladewright.section.unified_limits import RADII
@@ -71,6 +73,10 @@ CONFORMAL, UNROLLED = "m'-theta", "m-r*theta"
 """planes of stream surfaces in which sections are tried"""
 SAME_RADIUS = 1.02
 """ratio of the edges' radii below which both planes show the same sections but for their size, within 1 %"""
+
+
+BAND = 0.15
+"""half the width, in v, of the band of points that are taken for points of the section in its middle"""
 
 
 def matched_blade(
@@ -145,12 +151,29 @@ def _first_blade(task: Task, kind: FitFamily, like: Any, header: DesignHeader) -
     closed = next(filter(can_be_built, chain([found], smaller)), found)
     task.progress("first design of the family")
     try:
-        return _first(task, model_of(closed).shape(closed).exact, kind, like, header)
+        return _first(task, model_of(closed).shape(closed), kind, like, header)
     except FitError as refusal:
         try:
-            return _first(task, model_of(first).shape(first).exact, kind, like, header)
+            return _first(task, model_of(first).shape(first), kind, like, header)
         except FitError:
             raise refusal from None
+
+
+def _band(task: Task, closed: ModelShape, v: float) -> Reals:
+    """Points (n, 2) of the section at v of a closed blade, with the deviations of the points of the cloud beside it."""
+    few = task.thinned(SEVERAL_POINTS)
+    feet = nearest_footpoints(few.points, closed.sides)
+    section = closed.exact.section(v)
+    found = []
+    for number, name in enumerate(("upper", "lower")):
+        rows = np.flatnonzero((feet.side == number) & (np.abs(feet.v - v) < BAND))
+        curve = section.curves[name]
+        places, along = np.real(curve(feet.u[rows])), np.real(curve.derivative(feet.u[rows]))
+        scale = np.real(section.scale(places[:, 0]))
+        left = np.stack([-along[:, 1], along[:, 0]], axis=-1) / np.sqrt(np.sum(along**2, axis=-1))[:, None]
+        outward = left if number == 0 else -left
+        found.append(places + (feet.heights[rows] / scale)[:, None] * outward)
+    return np.concatenate(found)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -164,24 +187,26 @@ class _Frame:
     """at SECTION_SPANS"""
 
 
-def _first(task: Task, exact: Any, kind: FitFamily, like: Any, header: DesignHeader) -> tuple[float, Design]:
-    """The blade of the family nearest to the points whose sections are those of an exact blade; the turn of its frame.
+def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: DesignHeader) -> tuple[float, Design]:
+    """The blade of the family nearest to the points whose sections are those of a closed blade; the turn of its frame.
 
     Planes and kinds of section that those in the middle hardly tell apart are told apart by a short search of whole
     blades, of each plane with theta counted from where these meet it best.
     """
-    found = ClosedChannel(exact=exact)
-    built = [exact.section(float(v)) for v in SECTION_SPANS]
+    found = ClosedChannel(exact=closed.exact)
+    built = [closed.exact.section(float(v)) for v in SECTION_SPANS]
     middle = section_shape(built[MIDDLE])
     found = replace(found, backwards=_backwards(found, kind, like, middle))
+    band = _band(task, closed, float(SECTION_SPANS[MIDDLE]))
     part = None if like is None else with_mean_laws(like.section)
     tried, refusal = list[tuple[Match, _Frame]](), FitError("no plane of sections was tried")
     for plane, turn in _planes(task, found, like, middle):
         shapes = [section_shape(each, unroll=plane == UNROLLED, turn=turn) for each in built]
+        beside = unrolled(built[MIDDLE], band, turn) if plane == UNROLLED else band
         if found.backwards:
-            shapes = [each.reversed() for each in shapes[::-1]]
+            shapes, beside = [each.reversed() for each in shapes[::-1]], beside * [-1.0, 1.0]
         try:
-            matches = _matched(kind, shapes[MIDDLE], part)
+            matches = _matched(kind, shapes[MIDDLE], beside, part)
             frame = _Frame(plane=plane, turn=turn, shapes=shapes)
             tried += [(match, frame) for match in matches]
         except FitError as error:
@@ -301,9 +326,8 @@ def _along_span(shapes: Sequence[SectionShape], middle: Match) -> list[Any]:
     ]
 
 
-def _matched(kind: FitFamily, shape: SectionShape, like: Any) -> list[Match]:
-    """The best match of a section from its first parts, of the structure of a given part, and those hardly worse."""
-    points = shape.outline
+def _matched(kind: FitFamily, shape: SectionShape, points: Reals, like: Any) -> list[Match]:
+    """The best match of points (n, 2) of a section, of the structure of a given part, and those hardly worse."""
     task = Task(points=points, weights=np.ones(len(points)), free=_section_parameters, bounds={})
     x, y = shape.start
     designs = (

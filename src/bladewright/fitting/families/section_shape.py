@@ -77,13 +77,6 @@ class SectionShape:
         at = int(np.argmax(heights**2))
         return float(heights[at]), float(PLACES[at])
 
-    @property
-    def outline(self) -> Reals:
-        """(2 n, 2) points around the section where it stands [m], from its leading edge."""
-        cosine, sine = np.cos(self.stagger), np.sin(self.stagger)
-        around = np.concatenate([self.upper, self.lower[::-1]])
-        return self.start + self.chord * around @ np.array([[cosine, sine], [-sine, cosine]])
-
     def reversed(self) -> "SectionShape":
         """The same section for flow from the other side: its edges exchanged, its sides kept."""
         turn = np.array([-1.0, 1.0])
