@@ -73,10 +73,9 @@ CONFORMAL, UNROLLED = "m'-theta", "m-r*theta"
 """planes of stream surfaces in which sections are tried"""
 SAME_RADIUS = 1.02
 """ratio of the edges' radii below which both planes show the same sections but for their size, within 1 %"""
-
-
 BAND = 0.15
-"""half the width, in v, of the band of points that are taken for points of the section in its middle"""
+"""half the width, in v, of the band of points that are taken for points of the section in its middle: by the closed
+blade's own section alone an inflow nozzle is met at 1.5e-4 of the chord with 72 parameters, not at 9.2e-5 with 64"""
 
 
 def matched_blade(
