@@ -150,6 +150,37 @@ def test_a_contour_has_points_on_the_corners_of_a_blunt_edge():
     assert (part.abscissas[-1], part.ordinates[-1]) == pytest.approx(tuple(shape.lower[-1]))
 
 
+def test_a_side_with_more_heights_keeps_a_tangent_that_its_edge_needs():
+    blade = replace(
+        STATOR,
+        stagger_angle=-30.62,
+        metal_angle_in=44.87,
+        metal_angle_out=-88.95,
+        skeleton="pseudo",
+        leading_edge_radius=0.01958,
+        leading_edge_stretch=2.992,
+        leading_edge_skew=-0.3472,
+        trailing_edge_radius=0.009281,
+        trailing_edge_stretch=0.7172,
+        trailing_edge_skew=-0.09825,
+        leading_edge_wedge=24.79,
+        trailing_edge_wedge=49.85,
+        suction_side="upper",
+        suction_tangent_in=0.06996,
+        suction_tangent_out=0.005125,
+        pressure_tangent_in=0.0842,
+        pressure_tangent_out=0.1255,
+        suction_heights=(0.107, 0.09263, 0.003362, -0.03285),
+        pressure_heights=(-0.03329, -0.05162, -0.06533, -0.06489),
+    )
+    design = section(blade)
+    for law in resizable_laws(design):
+        richer = reshaped(design, structure_of(design).resized(law.name, (8, 1))).section
+        richer.outline(ALONE)
+        assert richer.suction_tangent_out == blade.suction_tangent_out
+        assert (richer.pressure_tangent_out < blade.pressure_tangent_out) == (law.name == "section.pressure_heights")
+
+
 def test_a_section_on_too_short_a_tangent_is_crowded_before_it_is_refused():
     assert np.max(np.real(infeasibility(STATOR, ALONE))) < 0.0
     reach = 0.1

@@ -8,6 +8,7 @@ from typing import Any, final
 import numpy as np
 
 from bladewright.designs import Law, Stations, value_at
+from bladewright.errors import DesignError
 from bladewright.fitting.matching.scales import scales_of
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import (
@@ -79,6 +80,10 @@ class ResizableLaw(ABC):
         """The stations at which it is given in a design; their values do not count."""
         return None
 
+    def settled(self, before: Any, after: Any) -> Any:  # noqa: ARG002 - the contract's
+        """A design after laws were resized, with what changes besides where this one was."""
+        return after
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Row:
@@ -125,7 +130,6 @@ ONE, ALONG_SPAN = Row(fewest=1, most=1), Row(fewest=1, most=MOST_SPAN)
 """no row but one control point, and those of a law along the span"""
 
 
-@final
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SpanLaw(ResizableLaw):
     """A law along the span, or a row of them along the chord."""
@@ -184,3 +188,28 @@ def _nearest_numbers(law: Law, count: int, stations: Stations | None) -> Reals:
         return np.array(law_points(law))
     values = np.real(Span(COMPARED_PLACES).values(law))
     return np.asarray(np.linalg.lstsq(law_basis(count, COMPARED_PLACES), values, rcond=None)[0])
+
+
+@final
+class HeightsLaw(SpanLaw):
+    """The heights of a side by suction and pressure, whose tangents stand on the same knots."""
+
+    def settled(self, before: Any, after: Any) -> Any:
+        """A side leaves its corner as fast where its first control point is as much nearer as the knots are."""
+        ratio = (len(self.laws(before)) + 1.0) / (len(self.laws(after)) + 1.0)
+        for tangent in (self.name.replace("heights", f"tangent_{way}") for way in ("in", "out")):
+            law = value_at(after, tangent)
+            if law is not None and stations_of(law) is None:
+                scaled = after.changed({tangent: plain_law(ratio * np.array(law_points(law)))})
+                after = scaled if ratio >= 1.0 or _has_sections(scaled) else after
+        return after
+
+
+def _has_sections(design: Any) -> bool:
+    """Whether the sides leave the edges; with short tangents they turn back."""
+    span = Span(COMPARED_PLACES[::10])
+    try:
+        design.section.outline(span).check_limits([""] * len(span.v))
+    except DesignError:
+        return False
+    return True

@@ -27,6 +27,7 @@ from bladewright.fitting.model_selection.laws import (
     MOST_CHORD,
     ONE,
     Counts,
+    HeightsLaw,
     ResizableLaw,
     Row,
     SpanLaw,
@@ -179,7 +180,8 @@ def sized_laws(design: Any) -> list[ResizableLaw]:
     for name, row in rows.items():
         numbers = rich[design.dimension], _rich_span(stem, name)
         # of the control points of a second derivative only the ratios count, so that the largest is held
-        found.append(SpanLaw(name=f"{stem}{name}", rich=numbers, row=row, span=span, holds_corners=name == "curvature"))
+        kind = HeightsLaw if name.endswith("_heights") else SpanLaw
+        found.append(kind(name=f"{stem}{name}", rich=numbers, row=row, span=span, holds_corners=name == "curvature"))
     for path, _ in named_laws(design) if design.dimension == 3 else ():
         in_row = path.removeprefix(stem).partition("[")[0] in rows
         if (path.startswith(stem) or path in POSITIONS) and not (in_row or path.startswith(WEIGHTS)):
@@ -244,9 +246,13 @@ def resizable_laws(design: Design) -> list[ResizableLaw]:
 def reshaped(design: Design, structure: Structure) -> Any:
     """A design of another structure whose laws and curves are nearest to those of `design`, by least squares."""
     changes: dict[str, Any] = {}
-    for law in sized_laws(design):
+    laws = sized_laws(design)
+    for law in laws:
         counts = structure.counts.get(law.name, law.counts_of(design))
         changes[law.name] = law.resized(design, counts, structure.stations.get(law.name))
     if structure.samples:
         changes |= {"samples": structure.samples, "clustering": structure.clustering}
-    return design.changed(changes)
+    found = design.changed(changes)
+    for law in laws:
+        found = law.settled(design, found)
+    return found
