@@ -59,7 +59,7 @@ def linear(truth: Design, points: Reals, paths: tuple[str, ...]) -> tuple[Reals,
     model = model_of(truth)
     shape = model.shape(truth)
     on = nearest_footpoints(points, shape.sides)
-    slopes = -np.einsum("nkd,nd->nk", model.rates(shape, on, model.tangents(shape, paths)), on.normals)
+    slopes = -model.along(shape, on, on.normals, paths)
     size = np.sqrt(np.sum(slopes**2, axis=0))
     step = -np.linalg.lstsq(slopes / size, on.heights, rcond=None)[0]
     deviation = NOISE * np.sqrt(np.diag(np.linalg.inv((slopes / size).T @ (slopes / size))))

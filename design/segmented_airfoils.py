@@ -19,6 +19,7 @@ from scipy.spatial import cKDTree
 
 import bladewright as bw
 from bladewright.fitting.families import segmented
+from bladewright.fitting.families.first_parts import first_part
 from bladewright.fitting.families.segmented import contour_shape
 from bladewright.nurbs.basis import basis
 from bladewright.section.laws import Span
@@ -83,7 +84,7 @@ def joints():
     print("|---" * 7 + "|")
     for window in (0.02, segmented.WINDOW, 0.1):
         segmented.WINDOW = window
-        part = segmented.first_parts(shape, None)[0]
+        part = first_part(segmented.structures(shape)[0], shape)
         found = []
         for sign, table in ((1.0, level[: nose + 1]), (-1.0, level[nose:])):
             for ends in pairwise(side_joints(part, sign, SPAN)):

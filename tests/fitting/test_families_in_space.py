@@ -11,21 +11,22 @@ from scipy.spatial import cKDTree
 from bladewright.errors import FitError
 from bladewright.fitting import free_parameters
 from bladewright.fitting.families import blades
-from bladewright.fitting.families.blades import _alike, _kind_of
-from bladewright.fitting.families.first_parts import CAMBER_ANGLES, WEDGE_DIFFUSERS
-from bladewright.fitting.families.flow_path import ChannelCurves
+from bladewright.fitting.families.blades import _alike
+from bladewright.fitting.families.first_parts import through_points
+from bladewright.fitting.families.flow_path import ClosedChannel
 from bladewright.fitting.families.kinds import FAMILIES
-from bladewright.fitting.families.laws import counts_of, part_along_span, with_mean_laws
+from bladewright.fitting.families.laws import LAW_COUNT, part_along_span, part_of_laws, with_mean_laws
 from bladewright.fitting.families.section_shape import section_shape, unrolled
 from bladewright.fitting.families.sections import misfits
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import FreeParameters, gauge_parameters, sliding_coordinate
+from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footpoints
 from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.matching.search import Task
 from bladewright.fitting.model_selection.structure import structure_of
-from bladewright.fitting.models.blunt_edges import sides_of
+from bladewright.fitting.models.blunt_edges import FACE_SHARE, sides_of
 from bladewright.fitting.models.model import model_of
-from bladewright.section.laws import Span
+from bladewright.section.laws import Span, law_points, named_laws
 from bladewright.section.profiles.naca4 import Naca4
 from bladewright.section.wedge_diffuser import WedgeDiffuser, WedgeDiffuserSection
 from machines.sectioned import BLUNT, COMPRESSOR, DESIGNS, DIFFUSER
@@ -55,19 +56,22 @@ def shaken(design, part=0.05):
 @pytest.mark.parametrize("name", MODELS)
 def test_the_derivatives_of_a_blades_sides_are_those_of_the_sides_built_with_a_difference(name):
     design = MODELS[name]
-    model, paths = model_of(design), FreeParameters()(design)
+    model, paths = model_of(design, 1e-7), FreeParameters()(design)
     values, sizes = design.parameters(), scales_of(design, paths, model.chord).size
     direction = sizes * np.random.default_rng(5).uniform(0.5, 1.0, len(paths))
-    sides = []
+    shape, random = model.shape(design), np.random.default_rng(6)
+    # a blunt face moves as a straight one does
+    own = 1.0 - FACE_SHARE if model.blunt[1] else 1.0
+    points = np.concatenate([side(own * random.random(40), random.random(40)) for side in shape.sides])
+    on, ends = nearest_footpoints(points, shape.sides), []
     for step in (1e-5, -1e-5):
         changed = {path: float(values[path] + step * way) for path, way in zip(paths, direction, strict=True)}
-        sides.append(model.shape(design.changed(changed)).sides)
-    for rate, above, below in zip(model.tangents(model.shape(design), paths), *sides, strict=True):
-        slope = (above.control_points - below.control_points) / 2e-5
-        # a blunt face moves as a straight one does
-        own = slice(None, -5 if model.blunt[1] else None)
+        sides = model.shape(design.changed(changed)).sides
+        ends.append(footpoints_at(points, sides, on.side, on.u, on.v).points)
+    for axis, slope in zip(np.eye(3), ((ends[0] - ends[1]) / 2e-5).T, strict=True):
+        rates = model.along(shape, on, np.broadcast_to(axis, points.shape), paths)
         # of second order in the step, as of sections
-        assert np.tensordot(direction, rate, axes=1)[own] == pytest.approx(slope[own], abs=1e-6 * model.chord)
+        assert rates @ direction == pytest.approx(slope, abs=1e-6 * model.chord)
 
 
 @pytest.mark.slow
@@ -102,9 +106,10 @@ def test_a_part_of_laws_is_made_again_from_its_sections_and_its_numbers_of_contr
         numbers = with_mean_laws(part).parameters()
         angles = {name: float(at.values(getattr(part, name))[i]) for name in ("metal_angle_in", "metal_angle_out")}
         parts.append(with_mean_laws(part).changed({path: angles.get(path, value) for path, value in numbers.items()}))
-    again = part_along_span(parts, v, counts_of(part))
+    counts = {path: len(law_points(law)) for path, law in named_laws(part)}
+    again = part_along_span(parts, counts)
     assert again.metal_angle_in == pytest.approx(part.metal_angle_in, abs=1e-9)
-    assert counts_of(again) == counts_of(part)
+    assert {path: len(law_points(law)) for path, law in named_laws(again)} == counts
 
 
 def test_a_section_for_the_flow_from_the_other_side_has_its_edges_exchanged_and_its_sides_kept():
@@ -120,7 +125,7 @@ def test_a_section_for_the_flow_from_the_other_side_has_its_edges_exchanged_and_
 
 def test_edges_of_another_kind_than_points_are_refused():
     with pytest.raises(FitError, match="give the design as start"):
-        ChannelCurves(exact=None).edge_like("leading_edge", None, 1e-3)
+        ClosedChannel(exact=None).edge_like("leading_edge", None, 1e-3)
 
 
 def test_an_edge_whose_corner_has_slid_along_its_wall_runs_on_as_the_rest_of_it():
@@ -130,7 +135,7 @@ def test_an_edge_whose_corner_has_slid_along_its_wall_runs_on_as_the_rest_of_it(
         "shroud": lambda t: 1e-3 * np.stack([43.0 + 0.0 * t, 55.0 + 45.0 * t], axis=-1),
     }
     channel = SimpleNamespace(line=lambda name: SimpleNamespace(values=lines[name]))
-    found = ChannelCurves(exact=SimpleNamespace(channel=channel)).edge("trailing_edge", 1e-3)
+    found = ClosedChannel(exact=SimpleNamespace(channel=channel)).edge("trailing_edge", 1e-3)
     steps = np.diff(np.array(found.points), axis=0)
     assert np.all(np.abs(steps[:, 1]) < np.abs(steps[:, 0]))
 
@@ -184,7 +189,7 @@ def test_parts_along_the_span_are_the_searched_one_where_shapes_are_alike_and_tu
         replace(shape, stagger=shape.stagger + np.radians(turn)) for turn in (-2.0, -1.0, -0.5, 0.0, 1.0, 2.0, 4.0)
     ]
     match = SimpleNamespace(design=SimpleNamespace(section=searched))
-    parts = blades._along_span(FAMILIES["wedge-diffuser"], shapes, match)
+    parts = blades._along_span(shapes, match)
     assert parts[3].parameters() == pytest.approx(searched.parameters())
     assert [each.stagger_angle for each in parts] == pytest.approx([28.0, 29.0, 29.5, 30.0, 31.0, 32.0, 34.0])
     assert {each.wedge_angle for each in parts} == {9.5}
@@ -193,8 +198,8 @@ def test_parts_along_the_span_are_the_searched_one_where_shapes_are_alike_and_tu
 def test_contours_of_a_profile_that_tapers_keep_its_kind_of_edge_and_its_shape():
     profile = Naca4(stagger_angle=(30.0, 50.0), thickness=(0.12, 0.08), camber=0.04, camber_position=0.4)
     shapes = blades._shapes_of(profile)
-    parts = [FAMILIES["profile"].through_points(each, blades.CONTOUR_POINTS) for each in shapes]
-    contours = part_along_span(parts, blades.START_SPANS, dict.fromkeys(counts_of(parts[0]), blades.LAW_COUNT))
+    parts = [through_points(each, blades.CONTOUR_POINTS) for each in shapes]
+    contours = part_of_laws(parts)
     span, s = Span(np.linspace(0.0, 1.0, 5)), np.linspace(0.0, 1.0, 8001)
     own, given = (each.outline(span) for each in (contours, profile))
     assert own.trailing_edge.kind == "sharp"
@@ -203,7 +208,7 @@ def test_contours_of_a_profile_that_tapers_keep_its_kind_of_edge_and_its_shape()
         # a start for a search: a third of the nose's radius
         assert max(off) < 5e-3
     # one coordinate of each point slides it along the contour, and both of the two ends
-    assert len(free_parameters._along_contour(contours)) == blades.LAW_COUNT * (blades.CONTOUR_POINTS + 2)
+    assert len(free_parameters._along_contour(contours)) == LAW_COUNT * (blades.CONTOUR_POINTS + 2)
 
 
 def stood_in(distances, left_out=()):
@@ -227,12 +232,3 @@ def test_matches_are_compared_by_their_outliers_too_but_by_none_more_than_is_far
     clipped = np.sqrt((19.0 * np.array([1.0, 1.05]) ** 2 + 6.0**2) / 20.0)
     assert misfits(planted) == pytest.approx(clipped.tolist())
     assert _alike([alike, near, stood_in([2.4] * 20)]) == [0, 1]
-
-
-def test_kinds_of_section_differ_by_words_and_by_what_they_have_none_of():
-    section = VANE.section
-    moved = section.changed({path: 0.999 * value for path, value in section.parameters().items()})
-    assert _kind_of(moved) == _kind_of(section)
-    kinds = {_kind_of(replace(CAMBER_ANGLES[0], trailing_edge=edge)) for edge in ("round", "blunt", "sharp")}
-    assert len(kinds) == 3
-    assert len({_kind_of(each) for each in WEDGE_DIFFUSERS}) == 2

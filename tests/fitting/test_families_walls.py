@@ -8,8 +8,8 @@ from scipy.spatial import cKDTree
 
 from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.designs import Point
-from bladewright.fitting.families import blades
 from bladewright.fitting.families.flow_path import CONTINUATIONS, WALL_COUNTS, WALL_DISTANCE, WALL_MARGIN, _wall
+from bladewright.fitting.families.laws import part_of_laws
 from bladewright.fitting.free_parameters import FreeParameters, gauge_parameters
 from bladewright.fitting.matching.blade_ends import WallPoints
 from bladewright.fitting.matching.footpoints import nearest_footpoints
@@ -114,6 +114,6 @@ def test_a_law_that_leaves_sections_no_shape_is_a_constant_and_the_others_stay_l
     # on both sides of the middle the shape would jump
     places = 0.5 + 1e-3 * np.array([-2.0, 1.0, -1.0, 0.0, 1.0, -1.0, 2.0])
     parts = [part.changed({"thickness.maximum_thickness_at": float(each)}) for each in places]
-    found = blades._laws(parts, dict.fromkeys(part.parameters(), 3))
+    found = part_of_laws(parts)
     assert np.ndim(found.thickness.maximum_thickness_at) == 0
     assert len(found.metal_angle_in) == len(found.thickness.maximum_thickness) == 3

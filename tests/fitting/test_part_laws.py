@@ -10,7 +10,7 @@ from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.designs import Point
 from bladewright.errors import DesignError
 from bladewright.fitting.assessment.acceptance import MatchTarget
-from bladewright.fitting.families.first_parts import profile_parts, through_points
+from bladewright.fitting.families.first_parts import through_points
 from bladewright.fitting.families.kinds import FAMILIES, DesignHeader
 from bladewright.fitting.families.section_shape import section_shape
 from bladewright.fitting.families.sections import _through_points, criterion, designs_of
@@ -18,8 +18,8 @@ from bladewright.fitting.free_parameters import EDGES, FreeParameters
 from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.model_selection import reshaping
 from bladewright.fitting.model_selection.elimination import LinearModel
-from bladewright.fitting.model_selection.reshaping import rich_structure
-from bladewright.fitting.model_selection.structure import reshaped, resizable_laws, richest, structure_of
+from bladewright.fitting.model_selection.reshaping import rich_structure, richest
+from bladewright.fitting.model_selection.structure import reshaped, resizable_laws, structure_of
 from bladewright.fitting.models.sectioned import PlanarModel, infeasibility
 from bladewright.section.camber_angle import CamberAngleSection
 from bladewright.section.laws import Span
@@ -131,7 +131,7 @@ def test_an_outline_of_points_follows_what_no_profile_of_a_kind_does():
     some, kind, header = task(section(STATOR)), FAMILIES["profile"], DesignHeader(name="found", length_unit="mm")
     shape = section_shape(section(STATOR).build())
     found = [
-        searched(some, each, rounds=1) for each in designs_of(kind, shape, profile_parts(shape, None)[:3], header, some)
+        searched(some, each, rounds=1) for each in designs_of(kind, shape, kind.first_parts(shape)[:3], header, some)
     ]
     target = MatchTarget(parameters=26)
     outline, _ = _through_points(some, kind, found, header, target, found[0])

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import bladewright as bw
-from bladewright.fitting.families.laws import with_stations_of
-from bladewright.fitting.model_selection.structure import reshaped, richest, structure_of
+from bladewright.fitting.model_selection.reshaping import richest
+from bladewright.fitting.model_selection.structure import reshaped, structure_of
 from bladewright.section.laws import law_points, named_laws, stations_of
 from machines import built
 from machines.stations import AXIAL, SPAN, TABLE, at_stations, moved
@@ -41,10 +41,10 @@ def test_a_like_design_says_which_laws_are_given_at_stations():
     found = reshaped(plain, structure_of(AXIAL["unified"]))
     assert (found.metal_angle_out.span, found.stagger.span) == (TABLE.span, TABLE.span)
     assert stations_of(found.metal_angle_in) is None
-    part = AXIAL["profile"].section.changed("stagger_angle", (-8.0, -30.0, -48.0))
-    other = with_stations_of(part, AXIAL["profile"].section)
-    assert other.stagger_angle.values == pytest.approx([-8.0, -18.75, -29.0, -38.75, -48.0], abs=1e-12)
-    assert other.thickness == part.thickness
+    plain = AXIAL["profile"].changed("section.stagger_angle", (-8.0, -30.0, -48.0))
+    part = reshaped(plain, structure_of(AXIAL["profile"])).section
+    assert part.stagger_angle.values == pytest.approx([-8.0, -18.75, -29.0, -38.75, -48.0], abs=1e-12)
+    assert part.thickness == plain.section.thickness
 
 
 def test_a_law_at_stations_keeps_them_where_other_laws_get_control_points():

@@ -67,11 +67,6 @@ def face_tangents(blade: Blade, paths: Sequence[str]) -> Iterator[dict[str, Arra
         yield nets_through(data_from_rates(rows, blade), blade.knots)
 
 
-def side_tangents(blade: Blade, paths: Sequence[str]) -> Iterator[Nets]:
-    """The same of the upper and the lower side."""
-    return ((tangents["upper"], tangents["lower"]) for tangents in face_tangents(blade, paths))
-
-
 def step_tangents(blade: Blade, steps: Sequence[SpanwiseStep]) -> Nets:
     """Derivatives (k, n_u, n_v, 3) of both nets by whole steps, each of all its parameters by the same amount."""
     return sides_through(data_from_rates(_rates_of_steps(blade, steps), blade), blade.knots)

@@ -1,21 +1,37 @@
 """From points in space to a blade from sections of a family."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
-from itertools import chain, groupby
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import chain
 from typing import Any
 
 import numpy as np
 
 from bladewright.blade.design.sectioned import SectionedBlade
-from bladewright.designs import Design, Part, unit_at
+from bladewright.designs import Design, unit_at
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, SHARED_VARIANCE, MatchTarget
-from bladewright.fitting.families.flow_path import ChannelCurves
+from bladewright.fitting.families.first_parts import first_part, through_points
+from bladewright.fitting.families.flow_path import ClosedChannel
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
-from bladewright.fitting.families.laws import counts_of, nearest_law, part_along_span, with_mean_laws, with_stations_of
+from bladewright.fitting.families.laws import (
+    LAW_COUNT,
+    MIDDLE,
+    SECTION_SPANS,
+    nearest_law,
+    part_of_laws,
+    with_mean_laws,
+)
 from bladewright.fitting.families.section_shape import PLACES, SectionShape, section_shape, unrolled
-from bladewright.fitting.families.sections import CONSIDERED, PROMISING, compared, criterion, is_far, misfits
+from bladewright.fitting.families.sections import (
+    CONSIDERED,
+    PROMISING,
+    compared,
+    criterion,
+    inliers_of,
+    is_far,
+    misfits,
+)
 from bladewright.fitting.free_parameters import EDGES, FreeParameters, gauge_parameters
 from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.matching.footpoints import nearest_footpoints
@@ -32,7 +48,6 @@ from bladewright.fitting.model_selection.selection import (
 from bladewright.fitting.model_selection.structure import reshaped, structure_of
 from bladewright.fitting.model_selection.structure_search import SETTLED_RICH
 from bladewright.fitting.models.model import ModelShape, model_of
-from bladewright.fitting.models.sectioned import infeasibility
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import Span, law_points
@@ -48,12 +63,6 @@ WALLS_HELD_NOTE = "hub and shroud are held as they are given"
 ROUNDNESS_PLACE, ROUNDER_RATIO = 0.04, 1.3
 """chord fraction from an edge at which its roundness is compared, and the ratio of half thicknesses (`ROUNDER_RATIO`)
 from which one edge is the rounder one."""
-START_SPANS: Reals = np.linspace(0.0, 1.0, 7)
-"""places along the span of the sections that a start is taken from"""
-FEASIBILITY_SPANS = Span(np.linspace(0.0, 1.0, 13))
-"""places along the span at which laws must leave sections a shape"""
-LAW_COUNT = 3
-"""control points of each law along the span where no structure is given"""
 CONTOUR_POINTS = 32
 """points of contours along the chord where no profile is near enough (design/matching.md)"""
 ALIKE = 1.1
@@ -64,10 +73,9 @@ CONFORMAL, UNROLLED = "m'-theta", "m-r*theta"
 """planes of stream surfaces in which sections are tried"""
 SAME_RADIUS = 1.02
 """ratio of the edges' radii below which both planes show the same sections but for their size, within 1 %"""
-MIDDLE = len(START_SPANS) // 2
-"""number of the section in the middle, by which structures are compared"""
 BAND = 0.15
-"""half the width, in v, of the band of points that are taken for points of the section in its middle"""
+"""half the width, in v, of the band of points that are taken for points of the section in its middle: by the closed
+blade's own section alone an inflow nozzle is met at 1.5e-4 of the chord with 72 parameters, not at 9.2e-5 with 64"""
 
 
 def matched_blade(
@@ -81,36 +89,31 @@ def matched_blade(
     own = start is None and like is None
     if own and isinstance(task.free, FreeParameters):
         task = replace(task, free=replace(task.free, walls=True))
-    first: Any = start
+    first, structure = start, None if like is None else structure_of(like)
     if start is None:
-        turn, first = _first_of(task, _closed_blades(task, header, like), kind, like, header)
+        turn, first = _first_blade(task, kind, like, header)
         task = task.turned(turn)
-    elif like is not None:
-        first = reshaped(start, structure_of(like))
+    first = first if structure is None else reshaped(first, structure)
     first = task.free.applied(first) if isinstance(task.free, FreeParameters) else first
     check_bounds(first, task.free(first), task.bounds)
-    structure = None if like is None else structure_of(like)
     found, reason = selected_match(task, first, target, like=structure, guessed=start is None)
     misfit = is_far(found, target, NEAR_EVERYWHERE) and found.noise_estimate.correlation > SHARED_VARIANCE
-    if kind.through_points is not None and own and misfit and target.parameters is None:
-        outlined = _through_points(task, kind, found, target)
+    if kind.has_contours and own and misfit and target.parameters is None:
+        outlined = _through_points(task, found, target)
         found, reason = min(filter(None, ((found, reason), outlined)), key=lambda each: criterion(each[0], target))
     return found, "; ".join(filter(None, (reason, "" if own else WALLS_HELD_NOTE)))
 
 
-def _through_points(task: Task, kind: FitFamily, match: Match, target: MatchTarget) -> tuple[Match, str] | None:
+def _through_points(task: Task, match: Match, target: MatchTarget) -> tuple[Match, str] | None:
     """The match by contours that begin as the sections of another match, and why it ends where no target is met.
 
-    None where it has no shape. Outliers are those of the other match: contours that have not found an edge yet would
-    leave its points out.
+    None where it has no shape.
     """
-    assert kind.through_points is not None  # noqa: S101 - asked of the family that has them
     design: Any = match.design
-    inliers = task.thinned(len(match.rows)).part(np.flatnonzero(match.rows))
-    some = replace(inliers.thinned(SEVERAL_POINTS), allow_outliers=False)
+    some = inliers_of(task, match, SEVERAL_POINTS)
     try:
-        parts = [kind.through_points(each, CONTOUR_POINTS) for each in _shapes_of(design.section)]
-        section = _laws(parts, dict.fromkeys(counts_of(parts[MIDDLE]), LAW_COUNT))
+        parts = [through_points(each, CONTOUR_POINTS) for each in _shapes_of(design.section)]
+        section = part_of_laws(parts)
         if section is None:
             return None
         first = replace(design, section=section)
@@ -121,19 +124,21 @@ def _through_points(task: Task, kind: FitFamily, match: Match, target: MatchTarg
 
 
 def _shapes_of(part: Any) -> list[SectionShape]:
-    """The shapes of a part's sections at START_SPANS, apart from where they stand."""
-    span = Span(START_SPANS)
+    """The shapes of a part's sections at SECTION_SPANS, apart from where they stand."""
+    span = Span(SECTION_SPANS)
     upper, lower = (np.real(side) for side in part.outline(span).points(PLACES))
+    turns = np.broadcast_to(np.real(part.stagger(span)), len(SECTION_SPANS))
     return [
         SectionShape(chord=1.0, stagger=float(turn), start=np.zeros(2), upper=u, lower=v, edge_radii=(0.0, 0.0))
-        for turn, u, v in zip(np.broadcast_to(np.real(part.stagger(span)), len(START_SPANS)), upper, lower, strict=True)
+        for turn, u, v in zip(turns, upper, lower, strict=True)
     ]
 
 
-def _closed_blades(task: Task, header: DesignHeader, like: Any) -> Iterator[ModelShape]:
-    """Closed blades of the unified family that a task's points show: one that is searched, and one less near.
+def _first_blade(task: Task, kind: FitFamily, like: Any, header: DesignHeader) -> tuple[float, Design]:
+    """The family's first blade, from the sections of a closed blade of the unified family, and the turn of its frame.
 
-    Their sections and channels are all that is taken, so that they need not be fit to be built.
+    That is one that is searched, or where the family has no blade near it the one that the search began with, whose
+    edges miss no wall. Its sections and its channel are all that is taken, so that it need not be fit to be built.
     """
     points, row = task.thinned(THOROUGH_POINTS).points, header.row(like)
     first, outline = first_blade(points, name=header.name, length_unit=header.length_unit, **row)
@@ -143,22 +148,14 @@ def _closed_blades(task: Task, header: DesignHeader, like: Any) -> Iterator[Mode
     # searches hold edge radii at places along the span: between them they may be larger than the thickness holds
     smaller = (found.changed({path: share * radii[path] for path in radii}) for share in SMALLER_RADII)
     closed = next(filter(can_be_built, chain([found], smaller)), found)
-    # edges of the searched one may miss a wall
-    yield from (model_of(each).shape(each) for each in (closed, first))
-
-
-def _first_of(
-    task: Task, blades: Iterator[ModelShape], kind: FitFamily, like: Any, header: DesignHeader
-) -> tuple[float, Design]:
-    """What the first of the closed blades gives of which the family has a blade; FitError where none has."""
-    refusal = FitError("no closed blade was found near the points: give a start design")
-    for number, closed in enumerate(blades):
-        task.progress("first design of the family")
+    task.progress("first design of the family")
+    try:
+        return _first(task, model_of(closed).shape(closed), kind, like, header)
+    except FitError as refusal:
         try:
-            return _first(task, closed, kind, like, header)
-        except FitError as error:
-            refusal = refusal if number else error
-    raise refusal
+            return _first(task, model_of(first).shape(first), kind, like, header)
+        except FitError:
+            raise refusal from None
 
 
 def _band(task: Task, closed: ModelShape, v: float) -> Reals:
@@ -186,7 +183,7 @@ class _Frame:
     turn: float
     """[rad]"""
     shapes: list[SectionShape]
-    """at START_SPANS"""
+    """at SECTION_SPANS"""
 
 
 def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: DesignHeader) -> tuple[float, Design]:
@@ -195,11 +192,11 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
     Planes and kinds of section that those in the middle hardly tell apart are told apart by a short search of whole
     blades, of each plane with theta counted from where these meet it best.
     """
-    found = ChannelCurves(exact=closed.exact)
-    built = [closed.exact.section(float(v)) for v in START_SPANS]
+    found = ClosedChannel(exact=closed.exact)
+    built = [closed.exact.section(float(v)) for v in SECTION_SPANS]
     middle = section_shape(built[MIDDLE])
     found = replace(found, backwards=_backwards(found, kind, like, middle))
-    band = _band(task, closed, float(START_SPANS[MIDDLE]))
+    band = _band(task, closed, float(SECTION_SPANS[MIDDLE]))
     part = None if like is None else with_mean_laws(like.section)
     tried, refusal = list[tuple[Match, _Frame]](), FitError("no plane of sections was tried")
     for plane, turn in _planes(task, found, like, middle):
@@ -208,7 +205,7 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
         if found.backwards:
             shapes, beside = [each.reversed() for each in shapes[::-1]], beside * [-1.0, 1.0]
         try:
-            matches = _matched(kind, shapes[MIDDLE], beside, kind.first_parts(shapes[MIDDLE], part))
+            matches = _matched(kind, shapes[MIDDLE], beside, part)
             frame = _Frame(plane=plane, turn=turn, shapes=shapes)
             tried += [(match, frame) for match in matches]
         except FitError as error:
@@ -221,9 +218,8 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
             break
         if any(frame.plane == each.plane and frame is not each for _, each in blades):
             continue
-        parts = _along_span(kind, frame.shapes, chosen)
-        counts = dict.fromkeys(counts_of(parts[MIDDLE]), LAW_COUNT) if like is None else counts_of(like.section)
-        design = _blade_of(found, frame, kind.blade, _laws(parts, counts), like, header)
+        parts = _along_span(frame.shapes, chosen)
+        design = _blade_of(found, frame, kind.blade, part_of_laws(parts), like, header)
         try:
             blades.append((compared(few.turned(frame.turn), iter([design]))[0], frame))
         except FitError as error:
@@ -241,7 +237,7 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
 
 
 def _blade_of(
-    found: ChannelCurves, frame: _Frame, blade: type[SectionedBlade], section: Any, like: Any, header: DesignHeader
+    found: ClosedChannel, frame: _Frame, blade: type[SectionedBlade], section: Any, like: Any, header: DesignHeader
 ) -> Any:
     """The blade of sections that stand where those of a closed blade do."""
     design = found.exact.design
@@ -249,7 +245,7 @@ def _blade_of(
     linear = design.arrangement == "linear"
     place = [float(each.start[1]) / metre if linear else float(np.degrees(each.start[1])) for each in frame.shapes]
     if frame.plane == UNROLLED:
-        place = [each / r for each, r in zip(place, found.values("leading_edge", START_SPANS)[:, 1], strict=True)]
+        place = [each / r for each, r in zip(place, found.values("leading_edge", SECTION_SPANS)[:, 1], strict=True)]
     fields: dict[str, Any] = {
         "name": header.name,
         "length_unit": header.length_unit,
@@ -259,16 +255,15 @@ def _blade_of(
         "section": section,
     }
     name = "leading_edge_y" if linear else "leading_edge_theta"
-    given = LAW_COUNT if like is None else len(law_points(getattr(like, name)))
-    fields[name] = nearest_law(place, START_SPANS, given)
+    fields[name] = nearest_law(place, LAW_COUNT)
     if like is None:
         fields |= {edge: found.edge(edge, metre) for edge in EDGES}
         return blade(**fields, flow_path=found.flow_path(metre, revolved=not linear), plane=frame.plane)
     fields |= {edge: found.edge_like(edge, getattr(like, edge), metre) for edge in EDGES}
-    return with_stations_of(replace(like, **fields), like)
+    return replace(like, **fields)
 
 
-def _backwards(found: ChannelCurves, kind: FitFamily, like: Any, section: SectionShape) -> bool:
+def _backwards(found: ClosedChannel, kind: FitFamily, like: Any, section: SectionShape) -> bool:
     """Whether the flow comes from the other side than the closed blade was found for.
 
     Points do not show it: `like` does. Without it wedges open downstream, other blades lead along x, and where they
@@ -289,36 +284,7 @@ def _backwards(found: ChannelCurves, kind: FitFamily, like: Any, section: Sectio
     return bool(last > ROUNDER_RATIO * first)
 
 
-def _laws(parts: list[Any], counts: Mapping[str, int]) -> Any:
-    """One part of laws: constants where a law, alone or together with those before it, leaves sections no shape."""
-    whole = _part_with_shape(parts, counts)
-    if whole is not None:
-        return whole
-    taken = dict.fromkeys(counts, 1)
-    found = _part_with_shape(parts, taken) or _part_with_shape([parts[MIDDLE]] * len(START_SPANS), taken)
-    # those of one row along the chord together: their numbers of control points change together too
-    for _, row in groupby(counts, key=lambda path: path.partition("[")[0]):
-        more = taken | {path: counts[path] for path in row}
-        wider = _part_with_shape(parts, more)
-        if wider is not None:
-            taken, found = more, wider
-    return found
-
-
-def _part_with_shape(parts: list[Any], counts: Mapping[str, int]) -> Any:
-    """One part of laws of so many control points each, or None where it has sections without a shape."""
-    try:
-        part = part_along_span(parts, START_SPANS, counts)
-        outline = part.outline(FEASIBILITY_SPANS)
-        outline.points(START_SPANS)
-        outline.check_limits([""] * len(FEASIBILITY_SPANS.v))
-        infeasibility(part, FEASIBILITY_SPANS)
-    except DesignError:
-        return None
-    return part
-
-
-def _planes(task: Task, found: ChannelCurves, like: Any, middle: SectionShape) -> list[tuple[str, float]]:
+def _planes(task: Task, found: ClosedChannel, like: Any, middle: SectionShape) -> list[tuple[str, float]]:
     """The planes in which sections may be those of the family, and the turns about x of the machine there [rad].
 
     Where radii differ, planes do not show the same shapes, and that of r theta neither wherever theta is counted from:
@@ -336,14 +302,14 @@ def _planes(task: Task, found: ChannelCurves, like: Any, middle: SectionShape) -
     return own if task.bounds else [*own, (UNROLLED, turn)]
 
 
-def _along_span(kind: FitFamily, shapes: Sequence[SectionShape], middle: Match) -> list[Any]:
+def _along_span(shapes: Sequence[SectionShape], middle: Match) -> list[Any]:
     """Parts at places along the span: that of the middle, which was searched, changed as its shapes say.
 
     Angles change by what the first parts of the shapes there and in the middle differ, and lengths by their ratio.
     """
     design: Any = middle.design
     part: Any = design.section
-    firsts = [kind.first_parts(shape, part)[0].parameters() for shape in shapes]
+    firsts = [first_part(part, shape).parameters() for shape in shapes]
 
     def changed(path: str, value: float, first: float, there: float) -> float:
         unit = unit_at(part, path)
@@ -359,32 +325,19 @@ def _along_span(kind: FitFamily, shapes: Sequence[SectionShape], middle: Match) 
     ]
 
 
-def _matched(kind: FitFamily, shape: SectionShape, points: Reals, parts: Sequence[Any]) -> list[Match]:
-    """The best match of points (n, 2) of a section from several parts, and those that are hardly worse."""
+def _matched(kind: FitFamily, shape: SectionShape, points: Reals, like: Any) -> list[Match]:
+    """The best match of points (n, 2) of a section, of the structure of a given part, and those hardly worse."""
     task = Task(points=points, weights=np.ones(len(points)), free=_section_parameters, bounds={})
     x, y = shape.start
     designs = (
         kind.section(
             name="section", length_unit="m", chord=shape.chord, leading_edge_x=x, leading_edge_y=y, section=part
         )
-        for part in parts
+        for part in kind.first_parts(shape, like)
     )
     tried = compared(task, designs)[:CONSIDERED]
     found = [searched(task, each.design, rounds=QUICK_ROUNDS, fading=True) for each in tried]
-    kinds = dict[Any, Match]()
-    for number in np.argsort(misfits(found), kind="stable"):
-        design: Any = found[number].design
-        kinds.setdefault(_kind_of(design.section), found[number])
-    nearest = list(kinds.values())
-    return [nearest[number] for number in _alike(nearest)]
-
-
-def _kind_of(part: Part) -> tuple[Any, ...]:
-    """What a part is besides its numbers: its class, its words, what it has none of, and those of the parts in it."""
-    values = (getattr(part, each.name) for each in fields(part))
-    return type(part), *(
-        _kind_of(each) if isinstance(each, Part) else each for each in values if isinstance(each, str | Part | None)
-    )
+    return [found[number] for number in _alike(found)]
 
 
 def _alike(matches: Sequence[Match]) -> list[int]:

@@ -2,17 +2,18 @@
 
 from collections.abc import Sequence
 from dataclasses import fields, replace
+from functools import singledispatch
 from typing import Any
 
 import numpy as np
-from scipy.optimize import lsq_linear
 
 from bladewright.fitting.families.section_shape import PLACES, SectionShape
+from bladewright.fitting.matching.scales import part_range
 from bladewright.fitting.models.sectioned import SINGLE_SECTION
 from bladewright.nurbs.basis import Reals
-from bladewright.section.camber_angle import ANGLE, HALF_THICKNESS, CamberAngle
+from bladewright.section.camber_angle import ANGLE, CamberAngle
 from bladewright.section.curvature_meanline import CurvatureMeanline
-from bladewright.section.laws import law_basis, law_points
+from bladewright.section.laws import law_basis
 from bladewright.section.profiles.c4 import C4
 from bladewright.section.profiles.circular_arc import DoubleCircularArc
 from bladewright.section.profiles.flat_plate import FlatPlate
@@ -31,6 +32,14 @@ from bladewright.section.wedge_diffuser import WedgeDiffuser
 
 ENDS: Reals = np.array([0.0, 1.0])
 """chord fractions of leading and trailing edge"""
+
+
+@singledispatch
+def first_part(like: Any, shape: SectionShape) -> Any:
+    """The part of a structure, one of numbers, that is nearest to a section."""
+    raise NotImplementedError(f"no first {type(like).__name__} is known near a section of chord {shape.chord:g}")
+
+
 CAMBER_ANGLES = tuple(
     CamberAngle(camber_angle=(0.0,) * 4, half_thickness=(0.02,) * 5, trailing_edge=edge)
     for edge in ("round", "blunt", "sharp")
@@ -38,25 +47,18 @@ CAMBER_ANGLES = tuple(
 """parts whose structures are tried where none is given: one for each kind of trailing edge"""
 
 
-def camber_angle_parts(shape: SectionShape, like: CamberAngle | None) -> Sequence[CamberAngle]:
-    """The parts nearest to a section by least squares of its angle and of its half thickness."""
-    half, found = shape.half(PLACES), []
+@first_part.register
+def _(like: CamberAngle, shape: SectionShape) -> CamberAngle:
+    """By least squares of its angle, and the half thickness at the places of its control points."""
     # fractions of the meridional extent
     fraction = PLACES - shape.camber(PLACES) * np.tan(shape.stagger)
-    for each in CAMBER_ANGLES if like is None else [like]:
-        rows = law_basis(len(each.camber_angle), np.clip(fraction, 0.0, 1.0))
-        angles = np.degrees(shape.stagger + np.linalg.lstsq(rows, shape.angles(PLACES), rcond=None)[0])
-        outline = replace(each, half_thickness=(0.01,) * len(each.half_thickness)).outline(SINGLE_SECTION)
-        weights, places = (np.real(law.controls)[0] for law in (outline.weights, outline.places))
-        rows = law_basis(len(weights), np.linspace(0.0, 1.0, 2 * len(half)))
-        at, shares = rows @ places / (rows @ weights), rows * weights / (rows @ weights)[:, None]
-        free = shares[:, 1 : 1 + len(each.half_thickness)]
-        # beside a round edge the half thickness is far above what is left of it further on
-        limits = 0.1 * float(np.max(half)), 0.99 * HALF_THICKNESS.high
-        heights = lsq_linear(free, np.interp(at, fraction, half), bounds=limits).x
-        clipped = np.clip(angles, 0.99 * ANGLE.low, 0.99 * ANGLE.high)
-        found.append(replace(each, camber_angle=tuple(clipped.tolist()), half_thickness=tuple(heights.tolist())))
-    return found
+    rows = law_basis(len(like.camber_angle), np.clip(fraction, 0.0, 1.0))
+    angles = np.degrees(shape.stagger + np.linalg.lstsq(rows, shape.angles(PLACES), rcond=None)[0])
+    outline = replace(like, half_thickness=(0.01,) * len(like.half_thickness)).outline(SINGLE_SECTION)
+    places = np.real(outline.places.controls)[0][1 : 1 + len(like.half_thickness)]
+    heights = np.maximum(np.interp(places, fraction, shape.half(PLACES)), 0.05 * shape.thickest[0])
+    clipped = np.clip(angles, 0.99 * ANGLE.low, 0.99 * ANGLE.high)
+    return replace(like, camber_angle=tuple(clipped.tolist()), half_thickness=tuple(heights.tolist()))
 
 
 _BODY: dict[str, Any] = {"maximum_thickness": 0.1, "maximum_thickness_at": 0.4}
@@ -81,27 +83,22 @@ LEAST_CURVATURE = 0.1
 """smallest control point of the second derivative to begin with, of the largest: of one sign, it always has a shape"""
 
 
-def curvature_meanline_parts(shape: SectionShape, like: CurvatureMeanline | None) -> Sequence[CurvatureMeanline]:
-    """The parts nearest to a section: its angles, the bends of its mean line, and its thickness."""
+@first_part.register
+def _(like: CurvatureMeanline, shape: SectionShape) -> CurvatureMeanline:
+    """By its angles, the bends of its mean line, and its thickness."""
+    inner = like.curvature_places
+    places = np.array([0.0, *inner, 1.0]) if inner else np.linspace(0.0, 1.0, len(like.curvature))
     turned = abs(np.ptp(shape.angles(ENDS))) >= STRAIGHT
-    found = []
-    for each in CURVATURE_MEANLINES if like is None else [like]:
-        inner = [_mean(place) for place in each.curvature_places]
-        places = np.array([0.0, *inner, 1.0]) if inner else np.linspace(0.0, 1.0, len(each.curvature))
-        bends = shape.camber.deriv(2)(places) if turned else np.ones(len(places))
-        if each.curvature:
-            bends = np.maximum(bends / bends[np.argmax(bends**2)], LEAST_CURVATURE)
-        found.append(
-            replace(
-                each,
-                **_metal_angles(shape),
-                curvature=tuple(bends.tolist()),
-                curvature_places=tuple(inner),
-                thickness=replace(each.thickness, **_thickness(shape, each.thickness)),
-                thickness_multiplier=(0.0,) * len(each.thickness_multiplier),
-            )
-        )
-    return found
+    bends = shape.camber.deriv(2)(places) if turned else np.ones(len(places))
+    if like.curvature:
+        bends = np.maximum(bends / bends[np.argmax(bends**2)], LEAST_CURVATURE)
+    return replace(
+        like,
+        **_metal_angles(shape),
+        curvature=tuple(bends.tolist()),
+        thickness=replace(like.thickness, **_thickness(shape, like.thickness)),
+        thickness_multiplier=(0.0,) * len(like.thickness_multiplier),
+    )
 
 
 def _metal_angles(shape: SectionShape) -> dict[str, Any]:
@@ -114,38 +111,19 @@ def _thickness(shape: SectionShape, law: Any) -> dict[str, Any]:
     given, (maximum, at) = vars(law), shape.thickest
     # the radius of curvature of an ellipse whose half height is b is b / ratio
     ends = [
-        2.0 * r * _mean(given.get(f"{edge}_ratio") or usual)
+        2.0 * r * (given.get(f"{edge}_ratio") or usual)
         for r, (edge, usual) in zip(shape.radii, RATIOS.items(), strict=True)
     ]
-    first, tail, last, end = (float(each) for each in shape.half(np.array([0.03, 0.85, 0.95, 0.985])))
+    last = float(shape.half(np.array([0.95]))[0])
     known = {
         "maximum_thickness": maximum,
         "maximum_thickness_at": float(np.clip(at, 0.15, 0.8)),
         "leading_edge_thickness": ends[0],
         "trailing_edge_thickness": 2.0 * last if given.get("trailing_edge") == "blunt" else ends[1],
     }
-    if isinstance(law, ModifiedNaca):
-        # the radius of the leading edge is 1.1019 (thickness I / 6)^2 (NACA Report 492)
-        index = 6.0 * np.sqrt(shape.radii[0] / 1.1019) / maximum
-        known |= {
-            "leading_edge_index": float(np.clip(index, 1.0, 11.0)),
-            "trailing_edge_slope": float(np.clip(10.0 * (last - tail), -1.0, -0.01)),
-            "trailing_edge_thickness": 2.0 * end,
-        }
-    if isinstance(law, QuarticSpline):
-        # this law works with its maximum near 0.3
-        known |= {
-            "maximum_thickness_at": 0.3,
-            "leading_edge_thickness": 2.0 * first,
-            "trailing_edge_thickness": 2.0 * last,
-        }
     for name in ("leading_edge_thickness", "trailing_edge_thickness"):
         known[name] = float(np.clip(known[name], 0.02 * maximum, 0.6 * maximum))
     return {name: value for name, value in known.items() if given.get(name) is not None}
-
-
-def _mean(law: Any) -> float:
-    return float(np.mean(law_points(law)))
 
 
 SUCTION_PRESSURE = SuctionPressure(
@@ -169,23 +147,21 @@ WEDGES = (25.0, 50.0, 75.0)
 may be taken for parts of it (design/matching_constants.md)"""
 
 
-def suction_pressure_parts(shape: SectionShape, like: SuctionPressure | None) -> Sequence[SuctionPressure]:
-    """The parts nearest to a section: its edges by their radii, and sides at its heights over the skeleton line."""
-    if like is not None:
-        tried = [like]
-    else:
-        sided = replace(SUCTION_PRESSURE, suction_side="upper" if shape.most_cambered[0] > 0.0 else "lower")
-        both = [replace(sided, skeleton="pseudo"), sided]
-        tried = [*both, *(replace(each, edges="C1") for each in both)]
-    return [_suction_pressure(shape, each, wedge) for each in tried for wedge in WEDGES]
+def suction_pressures(shape: SectionShape) -> Sequence[SuctionPressure]:
+    """Parts whose structures are tried where none is given."""
+    sided = replace(SUCTION_PRESSURE, suction_side="upper" if shape.most_cambered[0] > 0.0 else "lower")
+    both = [replace(sided, skeleton="pseudo"), sided]
+    kinds = [*both, *(replace(each, edges="C1") for each in both)]
+    return [replace(each, leading_edge_wedge=wedge) for each in kinds for wedge in WEDGES]
 
 
-def _suction_pressure(shape: SectionShape, like: SuctionPressure, wedge: float) -> SuctionPressure:
+@first_part.register
+def _(like: SuctionPressure, shape: SectionShape) -> SuctionPressure:
+    """By its edges' radii, and sides at its heights over the skeleton line; the leading edge's wedge angle is kept."""
     tail = shape.half(np.array([0.85, 0.95]))
     last = 2.0 * np.degrees(np.arctan((tail[0] - tail[1]) / 0.1))
     values: dict[str, Any] = {
         "stagger_angle": float(np.degrees(shape.stagger)),
-        "leading_edge_wedge": wedge,
         "trailing_edge_wedge": float(np.clip(last, 2.0, 40.0)),
         **_metal_angles(shape),
     }
@@ -214,7 +190,7 @@ def _suction_pressure(shape: SectionShape, like: SuctionPressure, wedge: float) 
 
 
 def _places(given: Any, knots: Reals) -> Reals:
-    return np.array([_mean(law) for law in given]) if given else default_places(knots)
+    return np.array(given) if given else default_places(knots)
 
 
 WEDGE_DIFFUSERS = (
@@ -224,23 +200,21 @@ WEDGE_DIFFUSERS = (
 """parts whose structures are tried where none is given: with a back face, and without"""
 
 
-def wedge_diffuser_parts(shape: SectionShape, like: WedgeDiffuser | None) -> Sequence[WedgeDiffuser]:
-    """The vanes nearest to a section: its stagger, the line through its half thickness, and its edges."""
+@first_part.register
+def _(like: WedgeDiffuser, shape: SectionShape) -> WedgeDiffuser:
+    """By its stagger, the line through its half thickness, and its edges."""
     straight = np.linspace(0.2, 0.8, 31)
     opening, first = np.polyfit(straight, shape.half(straight), 1)
     last = float(np.clip(first + opening, 2e-3, 0.3))
     angle = float(np.clip(np.degrees(2.0 * np.arctan(opening)), 1.0, 60.0))
-    return [
-        replace(
-            each,
-            stagger_angle=float(np.degrees(shape.stagger)),
-            leading_edge_radius=float(np.clip(first, 1e-3, 0.2)),
-            # the corners of a back face are rounded by much less than its half width
-            trailing_edge_radius=last if each.wedge_angle is None else 0.2 * last,
-            wedge_angle=None if each.wedge_angle is None else angle,
-        )
-        for each in (WEDGE_DIFFUSERS if like is None else [like])
-    ]
+    return replace(
+        like,
+        stagger_angle=float(np.degrees(shape.stagger)),
+        leading_edge_radius=float(np.clip(first, 1e-3, 0.2)),
+        # the corners of a back face are rounded by much less than its half width
+        trailing_edge_radius=last if like.wedge_angle is None else 0.2 * last,
+        wedge_angle=None if like.wedge_angle is None else angle,
+    )
 
 
 LIFT = 4.0 * np.pi / np.log(2.0)
@@ -268,35 +242,34 @@ PROFILES: tuple[Profile, ...] = (
 """kinds that are tried where none is given"""
 
 
-def profile_parts(shape: SectionShape, like: Profile | None) -> Sequence[Profile]:
-    """The profiles nearest to a section, by its thickness, camber and stagger."""
-    if isinstance(like, PointsProfile):
-        return [through_points(shape, len(like.abscissas))]
-    maximum, _ = shape.thickest
-    camber, position = shape.most_cambered
-    turning = float(np.degrees(-np.diff(shape.angles(ENDS))[0]))
-    tail = float(shape.half(np.array([0.985]))[0])
-    first, last = (float(np.clip(each, 5e-4, 0.2 * maximum)) for each in shape.radii)
+@first_part.register
+def _(like: Profile, shape: SectionShape) -> Profile:
+    """By its thickness, camber and stagger."""
+    (maximum, _), (camber, position) = shape.thickest, shape.most_cambered
+    first, last = np.clip(shape.radii, 5e-4, 0.2 * maximum)
     values = {
-        "stagger_angle": float(np.degrees(shape.stagger)),
-        "thickness": float(np.clip(maximum, 0.01, 0.39)),
-        "camber": float(np.clip(camber, -0.25, 0.25)),
-        "camber_position": float(np.clip(position, 0.15, 0.7)),
-        "lift_coefficient": float(np.clip(LIFT * camber, -2.5, 2.5)),
-        "design_lift": float(np.clip(LIFT * camber, -1.5, 1.5)),
-        "camber_angle": float(np.clip(turning, -110.0, 110.0)),
+        "stagger_angle": np.degrees(shape.stagger),
+        "thickness": maximum,
+        "camber": camber,
+        "camber_position": np.clip(position, 0.15, 0.7),
+        "lift_coefficient": LIFT * camber,
+        "design_lift": LIFT * camber,
+        "camber_angle": np.degrees(-np.diff(shape.angles(ENDS))[0]),
         "leading_edge_radius": first,
         "trailing_edge_radius": last,
-        "trailing_edge_thickness": float(np.clip(2.0 * tail / maximum, 0.01, 0.4)),
+        "trailing_edge_thickness": max(2.0 * shape.half(np.array([0.985]))[0] / maximum, 0.01),
     }
-    found = []
-    for each in PROFILES if like is None else [like]:
-        known = {f.name for f in fields(each) if "unit" in f.metadata and getattr(each, f.name) is not None}
-        changes = {name: value for name, value in values.items() if name in known}
-        if isinstance(each, Naca5):
-            changes["camber_position"] = min(changes["camber_position"], 0.25)
-        found.append(replace(each, **changes))
-    return found
+    changes = {}
+    for each in fields(like):
+        if each.name in values and getattr(like, each.name) is not None:
+            allowed = part_range(like, each.name, values[each.name], abs(values[each.name]))
+            changes[each.name] = float(np.clip(values[each.name], allowed.low, allowed.high))
+    return replace(like, **changes)
+
+
+@first_part.register
+def _(like: PointsProfile, shape: SectionShape) -> PointsProfile:
+    return through_points(shape, len(like.abscissas))
 
 
 def through_points(shape: SectionShape, count: int) -> PointsProfile:

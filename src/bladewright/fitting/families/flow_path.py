@@ -41,7 +41,7 @@ CURVE_PLACES: Reals = np.linspace(0.0, 1.0, 201)
 
 
 @dataclass(frozen=True, kw_only=True)
-class ChannelCurves:
+class ClosedChannel:
     """A closed blade's channel, for the flow that it was found for, or for flow from the other side."""
 
     exact: Any

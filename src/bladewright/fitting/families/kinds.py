@@ -8,17 +8,14 @@ from bladewright.blade.design.families import BLADE_OF
 from bladewright.blade.design.row_design import Arrangement, LengthUnit
 from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.designs import Design
-from bladewright.fitting.families import (
-    part_laws,  # noqa: F401 - makes the laws of parts known
-    segmented,
-)
+from bladewright.fitting.families import segmented
 from bladewright.fitting.families.first_parts import (
-    camber_angle_parts,
-    curvature_meanline_parts,
-    profile_parts,
-    suction_pressure_parts,
-    through_points,
-    wedge_diffuser_parts,
+    CAMBER_ANGLES,
+    CURVATURE_MEANLINES,
+    PROFILES,
+    WEDGE_DIFFUSERS,
+    first_part,
+    suction_pressures,
 )
 from bladewright.fitting.families.section_shape import SectionShape
 from bladewright.nurbs.basis import Reals
@@ -53,17 +50,16 @@ class DesignHeader:
         return {name: known[name] if value is None else value for name, value in stated.items()}
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class FitFamily:
     """A family as fits know it."""
 
     name: str
     section: type[PlanarSection]
-    first_parts: Callable[[SectionShape, Any], Sequence[Any]]
-    """the parts nearest to a section: of the structure of a given part, or of every structure that is tried"""
-    through_points: Callable[[SectionShape, int], Any] | None = None
-    """the part through so many points of a section, where the family has one that follows any outline"""
-
+    structures: Callable[[SectionShape], Sequence[Any]]
+    """parts whose structures are tried near a section where none is given"""
+    has_contours: bool = False
+    """whether one of its kinds, a contour through points, follows any outline"""
     contour_shape: Callable[[Reals], SectionShape | None] | None = None
     """the section of points (n, 2) in order around it, where the family takes it from the points themselves"""
 
@@ -72,21 +68,20 @@ class FitFamily:
         """The blade of the same family."""
         return BLADE_OF[self.section]
 
+    def first_parts(self, shape: SectionShape, like: Any = None) -> list[Any]:
+        """The parts nearest to a section: of the structure of a given part, or of every structure that is tried."""
+        return [first_part(each, shape) for each in (self.structures(shape) if like is None else (like,))]
+
 
 FAMILIES = {
-    kind.name: kind
-    for kind in (
-        FitFamily(name="curvature-meanline", section=CurvatureMeanlineSection, first_parts=curvature_meanline_parts),
-        FitFamily(name="suction-pressure", section=SuctionPressureSection, first_parts=suction_pressure_parts),
-        FitFamily(name="wedge-diffuser", section=WedgeDiffuserSection, first_parts=wedge_diffuser_parts),
-        FitFamily(name="camber-angle", section=CamberAngleSection, first_parts=camber_angle_parts),
-        FitFamily(name="profile", section=ProfileSection, first_parts=profile_parts, through_points=through_points),
-        FitFamily(
-            name="segmented",
-            section=SegmentedSection,
-            first_parts=segmented.first_parts,
-            contour_shape=segmented.contour_shape,
-        ),
+    each.name: each
+    for each in (
+        FitFamily("curvature-meanline", CurvatureMeanlineSection, lambda _: CURVATURE_MEANLINES),
+        FitFamily("suction-pressure", SuctionPressureSection, suction_pressures),
+        FitFamily("wedge-diffuser", WedgeDiffuserSection, lambda _: WEDGE_DIFFUSERS),
+        FitFamily("camber-angle", CamberAngleSection, lambda _: CAMBER_ANGLES),
+        FitFamily("profile", ProfileSection, lambda _: PROFILES, has_contours=True),
+        FitFamily("segmented", SegmentedSection, segmented.structures, contour_shape=segmented.contour_shape),
     )
 }
 """the families by name"""

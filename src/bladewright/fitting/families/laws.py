@@ -1,34 +1,25 @@
-"""The laws of a family's part: as lines of control points, and along the span from sections at several places."""
+"""One part of laws along the span from parts of numbers, those of sections at several places."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields
+from collections.abc import Mapping, Sequence
+from itertools import groupby
 from typing import Any
 
 import numpy as np
 
-from bladewright.designs import Law, Part
+from bladewright.designs import Law
+from bladewright.errors import DesignError
+from bladewright.fitting.models.sectioned import infeasibility
 from bladewright.nurbs.basis import Reals
-from bladewright.section.laws import is_list, law_basis, law_points, named_laws, number_paths, sampled_at, stations_of
+from bladewright.section.laws import Span, law_basis, law_points, named_laws
 
-
-def lines_of(part: Part, stem: str) -> Iterator[list[str]]:
-    """Paths of control points in a row, for every law of a part and every row of laws."""
-    for each in fields(part):
-        value, path = getattr(part, each.name), f"{stem}.{each.name}"
-        if isinstance(value, Part) and "unit" not in each.metadata:
-            yield from lines_of(value, path)
-        elif "unit" in each.metadata and is_list(value):
-            yield from _lines(value, path)
-
-
-def _lines(value: Any, path: str) -> Iterator[list[str]]:
-    if not (isinstance(value, tuple) and any(map(is_list, value))):
-        yield number_paths(value, path)
-        return
-    rows = [number_paths(item, f"{path}[{i}]") for i, item in enumerate(value)]
-    yield from rows
-    if len({len(row) for row in rows}) == 1:
-        yield from (list(column) for column in zip(*rows, strict=True))
+SECTION_SPANS: Reals = np.linspace(0.0, 1.0, 7)
+"""places along the span of the sections that laws are taken from"""
+MIDDLE = len(SECTION_SPANS) // 2
+"""number of the section in the middle, by which structures are compared"""
+FEASIBILITY_SPANS = Span(np.linspace(0.0, 1.0, 13))
+"""places along the span at which laws must leave sections a shape"""
+LAW_COUNT = 3
+"""control points of each law along the span of a first blade"""
 
 
 def with_mean_laws(part: Any) -> Any:
@@ -36,31 +27,51 @@ def with_mean_laws(part: Any) -> Any:
     return part.changed({path: float(np.mean(law_points(law))) for path, law in named_laws(part)})
 
 
-def counts_of(part: Part) -> Mapping[str, int]:
-    """The number of control points of each law of a part by its path."""
-    return {path: len(law_points(law)) for path, law in named_laws(part)}
+def part_of_laws(parts: Sequence[Any]) -> Any:
+    """One part of laws from those of sections; None where even constants leave sections no shape.
+
+    Laws are constants where one, alone or together with those before it, leaves sections no shape.
+    """
+    paths = parts[MIDDLE].parameters()
+    whole = _with_shape(parts, dict.fromkeys(paths, LAW_COUNT))
+    if whole is not None:
+        return whole
+    taken = dict.fromkeys(paths, 1)
+    found = _with_shape(parts, taken) or _with_shape([parts[MIDDLE]] * len(parts), taken)
+    # those of one row along the chord together: their numbers of control points change together too
+    for _, row in groupby(paths, key=lambda path: path.partition("[")[0]):
+        more = taken | dict.fromkeys(row, LAW_COUNT)
+        wider = _with_shape(parts, more)
+        if wider is not None:
+            taken, found = more, wider
+    return found
 
 
-def with_stations_of(part: Any, like: Part) -> Any:
-    """The part with those laws given at stations that are so in `like`: the values of its own laws there."""
-    stations = {path: found for path, law in named_laws(like) if (found := stations_of(law))}
-    own = {path: law for path, law in named_laws(part) if path in stations}
-    return part.changed({path: sampled_at(law, stations[path]) for path, law in own.items()})
+def _with_shape(parts: Sequence[Any], counts: Mapping[str, int]) -> Any:
+    """One part of laws of so many control points each, or None where it has sections without a shape."""
+    try:
+        part = part_along_span(parts, counts)
+        outline = part.outline(FEASIBILITY_SPANS)
+        outline.points(SECTION_SPANS)
+        outline.check_limits([""] * len(FEASIBILITY_SPANS.v))
+        infeasibility(part, FEASIBILITY_SPANS)
+    except DesignError:
+        return None
+    return part
 
 
-def part_along_span(parts: Sequence[Any], v: Reals, counts: Mapping[str, int]) -> Any:
-    """One part of laws from parts of numbers at places v (m,) along the span, by least squares of each number."""
+def part_along_span(parts: Sequence[Any], counts: Mapping[str, int]) -> Any:
+    """One part of laws of so many control points each, by least squares of the numbers of those of sections."""
     values = [_with_unit_curvature(part).parameters() for part in parts]
-    middle = parts[len(parts) // 2]
-    return middle.changed({path: nearest_law([each[path] for each in values], v, counts[path]) for path in values[0]})
+    return parts[MIDDLE].changed({path: nearest_law([each[path] for each in values], counts[path]) for path in counts})
 
 
-def nearest_law(values: Sequence[float], v: Reals, count: int) -> Law:
-    """The law of so many control points nearest to values (m,) at places v (m,), kept inside their range."""
+def nearest_law(values: Sequence[float], count: int) -> Law:
+    """The law of so many control points nearest to values (m,) of the sections, kept inside their range."""
     at = np.asarray(values)
     if count == 1:
         return float(np.median(at))
-    found = np.linalg.lstsq(law_basis(count, v), at, rcond=None)[0]
+    found = np.linalg.lstsq(law_basis(count, SECTION_SPANS), at, rcond=None)[0]
     margin = 0.5 * float(np.ptp(at))
     low, high = float(np.min(at)), float(np.max(at))
     # a law that runs past its values by much may leave the range in which there is a shape

@@ -1,6 +1,6 @@
 """What every family takes its first section from: sides, camber line and edges of a closed section, in chords."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -77,25 +77,13 @@ class SectionShape:
         at = int(np.argmax(heights**2))
         return float(heights[at]), float(PLACES[at])
 
-    @property
-    def outline(self) -> Reals:
-        """(2 n, 2) points around the section where it stands [m], from its leading edge."""
-        cosine, sine = np.cos(self.stagger), np.sin(self.stagger)
-        around = np.concatenate([self.upper, self.lower[::-1]])
-        return self.start + self.chord * around @ np.array([[cosine, sine], [-sine, cosine]])
-
     def reversed(self) -> "SectionShape":
         """The same section for flow from the other side: its edges exchanged, its sides kept."""
         turn = np.array([-1.0, 1.0])
         end = self.start + self.chord * np.array([np.cos(self.stagger), np.sin(self.stagger)])
         upper, lower = ([1.0, 0.0] + turn * side[::-1] for side in (self.upper, self.lower))
-        return SectionShape(
-            chord=self.chord,
-            stagger=-self.stagger,
-            start=turn * end,
-            upper=upper,
-            lower=lower,
-            edge_radii=self.edge_radii[::-1],
+        return replace(
+            self, stagger=-self.stagger, start=turn * end, upper=upper, lower=lower, edge_radii=self.edge_radii[::-1]
         )
 
 

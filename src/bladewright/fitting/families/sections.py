@@ -11,6 +11,7 @@ from scipy.special import chdtri
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, MatchTarget, trusted_distance
+from bladewright.fitting.families.first_parts import through_points
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
 from bladewright.fitting.families.section_shape import SectionShape, section_shape
 from bladewright.fitting.families.unified import matched_unified
@@ -85,7 +86,7 @@ def matched_section(
     off = misfits(tried[:CONSIDERED])
     promising = [each.design for each, miss in zip(tried, off, strict=False) if miss < PROMISING * off[0]]
     found, reason = nearest(task, promising, target, structure)
-    if kind.through_points is not None and like is None and is_far(found, target):
+    if kind.has_contours and like is None and is_far(found, target):
         outline, note = _through_points(task, kind, tried, header, target, found)
         if outline is not None and criterion(outline, target) < criterion(found, target):
             found, reason = outline, note
@@ -162,11 +163,9 @@ def _through_points(
     """The match by a contour through points, by as few as are asked for, and a note of it; None where there is none.
 
     The contours begin as the nearest profiles of each kind of trailing edge: that is chosen by the worst neighbourhood,
-    as few points show an edge. Outliers are those of the nearest profile: a contour that has not found an edge yet
-    would leave its points out.
+    as few points show an edge.
     """
-    inliers = task.thinned(len(profile.rows)).part(np.flatnonzero(profile.rows))
-    some, found = replace(inliers.thinned(QUICK_POINTS), allow_outliers=False), None
+    some, found = inliers_of(task, profile, QUICK_POINTS), None
     starts = {_trailing_edge(each.design): each for each in reversed(tried)}
     # one coordinate is free of each point but two, and four numbers place the section
     for count in OUTLINE_COUNTS if target.parameters is None else (target.parameters - 2,):
@@ -182,13 +181,18 @@ def _through_points(
     return determined(some, found) if found is not None and target.open else (found, "")
 
 
+def inliers_of(task: Task, match: Match, most: int) -> Task:
+    """The task with so many of a match's inliers alone: a contour that has not found an edge would leave it out."""
+    inliers = task.thinned(len(match.rows)).part(np.flatnonzero(match.rows))
+    return replace(inliers.thinned(most), allow_outliers=False)
+
+
 def _outlined(task: Task, kind: FitFamily, start: Match, count: int, header: DesignHeader) -> Match | None:
     """The match by a contour that begins as so many points of another match's; None where it has no shape."""
     design: Any = start.design
-    assert kind.through_points is not None  # noqa: S101 - asked of the family that has them
     try:
         shape = section_shape(design.build())
-        (first,) = designs_of(kind, shape, [kind.through_points(shape, count)], header, task)
+        (first,) = designs_of(kind, shape, [through_points(shape, count)], header, task)
         found = searched(task, first, min_reduction=ROUGH_REDUCTION, fading=True)
     except (DesignError, FitError):
         return None

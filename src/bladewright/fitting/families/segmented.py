@@ -3,17 +3,18 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise, product
+from typing import Any
 
 import numpy as np
 from scipy.optimize import least_squares
 from scipy.spatial import cKDTree
 
 from bladewright.errors import DesignError
+from bladewright.fitting.families.first_parts import first_part
 from bladewright.fitting.families.section_shape import SectionShape
 from bladewright.fitting.models.sectioned import SINGLE_SECTION
 from bladewright.numerics.elementary import cross2, dot, length, turned_left, unit
 from bladewright.nurbs.basis import Reals, basis, greville
-from bladewright.section.laws import law_points
 from bladewright.section.profiles.points import PointsProfile
 from bladewright.section.segmented.part import JointVectors, Segmented, side_joints
 from bladewright.section.segmented.parts import AirfoilSide, Nose, Segment, SegmentJoint
@@ -74,30 +75,25 @@ def contour_shape(points: Reals) -> SectionShape | None:
     )
 
 
-def first_parts(shape: SectionShape, like: Segmented | None) -> Sequence[Segmented]:
-    """The airfoils nearest to a section: joints from its sides, each segment by least squares of its own.
-
-    Without a structure it is the reduced form, its trailing edge open or closed as the section's is, and both for a
-    round one.
-    """
-    if like is not None:
-        return [_first_part(shape, like)]
+def structures(shape: SectionShape) -> Sequence[Segmented]:
+    """The reduced form, its trailing edge open or closed as the section's is, and both for a round one."""
     closed = replace(REDUCED, trailing_edge_thickness=None)
     if shape.edge_radii[1] > 0.0:
-        return [_first_part(shape, each) for each in (REDUCED, closed)]
-    return [_first_part(shape, closed if np.allclose(shape.upper[-1], shape.lower[-1]) else REDUCED)]
+        return [REDUCED, closed]
+    return [closed if np.allclose(shape.upper[-1], shape.lower[-1]) else REDUCED]
 
 
-def _first_part(shape: SectionShape, like: Segmented) -> Segmented:
+@first_part.register
+def _(like: Segmented, shape: SectionShape) -> Segmented:
+    """With joints from its sides, and each segment by least squares of its own."""
     thickness = float(np.clip(shape.upper[-1, 1] - shape.lower[-1, 1], 5e-4, 0.4))
-    cuts = [float(np.mean(law_points(each))) for each in like.partition]
     part = replace(
         like,
         nose=_nose(like.nose, shape),
         stagger_angle=float(np.degrees(shape.stagger)),
         trailing_edge_thickness=None if like.trailing_edge_thickness is None else thickness,
-        upper=_joined(like.upper, shape.upper, cuts),
-        lower=_joined(like.lower, shape.lower, cuts),
+        upper=_joined(like.upper, shape.upper, like.partition),
+        lower=_joined(like.lower, shape.lower, like.partition),
         morph=None,
     )
     for side, sign, line in (("upper", 1.0, shape.upper), ("lower", -1.0, shape.lower)):
@@ -125,7 +121,7 @@ def _nose(like: Nose | None, shape: SectionShape) -> Nose | None:
     return Nose(angle=float(np.degrees(np.arctan2(-first[0], first[1]))), radius=radius)
 
 
-def _joined(like: AirfoilSide, line: Reals, cuts: list[float]) -> AirfoilSide:
+def _joined(like: AirfoilSide, line: Reals, cuts: Sequence[Any]) -> AirfoilSide:
     """The side with its joints on a line (n, 2)."""
     found = []
     for cut, joint in zip(cuts, (like.front_joint, like.rear_joint), strict=True):

@@ -2,7 +2,6 @@
 
 from contextlib import suppress
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 from bladewright.blade.design.unified import UnifiedBlade
@@ -17,7 +16,7 @@ from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import Match, Task, searched
 from bladewright.fitting.model_selection.reshaping import with_feasible_edges
 from bladewright.fitting.model_selection.selection import FINAL_REDUCTION, THOROUGH_POINTS, selected_match
-from bladewright.fitting.model_selection.structure import Structure, reshaped, structure_of
+from bladewright.fitting.model_selection.structure import reshaped, structure_of
 
 
 def matched_unified(
@@ -32,12 +31,16 @@ def matched_unified(
     if start is not None:
         guessed = start if wanted is None else reshaped(start, wanted)
     elif task.dimension == 2:
-        guessed = _first_section(task, wanted, header)
+        points, asked = task.thinned(THOROUGH_POINTS).points, {} if wanted is None else {"structure": wanted}
+        guessed = first_section(points, name=header.name, length_unit=header.length_unit, **asked)
     else:
         points, row = task.thinned(THOROUGH_POINTS).points, header.row(like)
         guessed, outline = first_blade(points, name=header.name, length_unit=header.length_unit, **row)
         task = replace(task, outline=outline)
-    first = _with_held_values(task, guessed, started=start is not None)
+    first = task.free.applied(guessed) if isinstance(task.free, FreeParameters) else guessed
+    if start is None and first is not guessed:
+        # held values may leave a guess no shape
+        first = with_feasible_edges(first)
     check_bounds(first, task.free(first), task.bounds)
     try:
         found, reason = selected_match(task, first, target, like=wanted, guessed=start is None)
@@ -49,35 +52,17 @@ def matched_unified(
     return found, built, note or reason
 
 
-def _with_held_values(task: Task, guessed: Design, *, started: bool) -> Design:
-    """A first design with the held values; a guess that they leave no shape gets thinner edges."""
-    first = task.free.applied(guessed) if isinstance(task.free, FreeParameters) else guessed
-    return first if started or first is guessed else with_feasible_edges(first)
-
-
-def _first_section(task: Task, structure: Structure | None, header: DesignHeader) -> Design:
-    """The first section from the points alone."""
-    points = task.thinned(THOROUGH_POINTS).points
-    asked = {} if structure is None else {"structure": structure}
-    return first_section(points, name=header.name, length_unit=header.length_unit, **asked)
-
-
-def _free_as(match: Match, _: Design) -> tuple[str, ...]:
-    return match.problem.paths
-
-
 def _buildable(task: Task, match: Match, *, structured: bool) -> tuple[Match, Any, str]:
     """The match and what it builds; where it is refused, one that keeps further from what is, or another and a note."""
-    refusal: DesignError | None = None
+    refusal, paths = DesignError(), match.problem.paths
     for margin_factor in (0.0, 1.0, 30.0, 1000.0):
         if margin_factor:
             # what a match holds stays held
-            fresh = replace(task, margin_factor=margin_factor, free=partial(_free_as, match))
+            fresh = replace(task, margin_factor=margin_factor, free=lambda _: paths)
             with suppress(FitError):
                 match = searched(fresh, match.design, rounds=2, min_reduction=FINAL_REDUCTION)
         try:
             return match, match.design.build(), ""
         except DesignError as error:
             refusal = error
-    assert refusal is not None  # noqa: S101 - every margin was refused
     return task.best_so_far.instead_of(match, refusal, structured=structured)

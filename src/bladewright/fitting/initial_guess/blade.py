@@ -18,8 +18,8 @@ from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.channel import SlicedChannel, machine_coordinates, ranked_channels
 from bladewright.fitting.initial_guess.slices import PLACES, fitted_law, unified_numbers
 from bladewright.fitting.matching.search import Task, searched
-from bladewright.fitting.model_selection.reshaping import widened_where_feasible, with_feasible_edges
-from bladewright.fitting.model_selection.structure import FIRST_BLADE, Structure
+from bladewright.fitting.model_selection.reshaping import FIRST_BLADE, widened_where_feasible, with_feasible_edges
+from bladewright.fitting.model_selection.structure import Structure
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import plain_law

@@ -16,12 +16,11 @@ import numpy as np
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Design, Part
 from bladewright.errors import DesignError
-from bladewright.fitting.families.laws import lines_of
 from bladewright.fitting.free_parameters import EDGES
 from bladewright.fitting.matching.blade_ends import BladeEnds, EdgeOverhang, WallPoints
 from bladewright.fitting.matching.footpoints import Footpoints, concatenated, nearest_footpoints
 from bladewright.fitting.matching.scales import Scales
-from bladewright.fitting.model_selection.structure import SPANWISE
+from bladewright.fitting.model_selection.structure import SPANWISE, lines_of
 from bladewright.fitting.models.model import Model, ModelShape
 from bladewright.numerics.least_squares import ConstrainedProblem
 from bladewright.nurbs.basis import Reals

@@ -1,6 +1,7 @@
-"""Designs with other numbers of control points that have a shape, and structures with more of them."""
+"""Structures that a match begins with, and ones with more control points; designs of them that have a shape."""
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection, Iterable
+from dataclasses import replace
 
 import numpy as np
 
@@ -8,19 +9,64 @@ from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Design
 from bladewright.errors import DesignError
 from bladewright.fitting.matching.noise import EXACT
-from bladewright.fitting.model_selection.laws import MOST_SPAN
+from bladewright.fitting.model_selection.laws import MOST_SPAN, ResizableLaw
 from bladewright.fitting.model_selection.structure import (
+    POSITIONS,
     SPARE_SAMPLES,
     Structure,
     reshaped,
     resizable_laws,
-    richest,
     structure_of,
-    within_rows,
 )
 from bladewright.fitting.models.model import model_of
+from bladewright.nurbs.basis import Reals
 from bladewright.section.unified import UnifiedSection
-from bladewright.section.unified_limits import THICKNESSES
+from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNESSES
+
+FIRST_ANGLES, FIRST_TANGENTS, FIRST_RADII = 4, 3, 2
+"""control points along the span of a first blade's angles and position, tangents and radii: free enough to find its
+edges"""
+FIRST_SECTION = Structure(counts=dict.fromkeys(THICKNESSES, (6, 1)), samples=16)
+"""of a section with which a match begins"""
+FIRST_BLADE = Structure(
+    counts={
+        **dict.fromkeys((*ANGLES, *POSITIONS), (1, FIRST_ANGLES)),
+        **dict.fromkeys(TANGENTS, (1, FIRST_TANGENTS)),
+        **dict.fromkeys(RADII, (1, FIRST_RADII)),
+        **dict.fromkeys(THICKNESSES, (6, 3)),
+        "channel": (4, 5, 4, 4),
+    },
+    samples=16,
+)
+"""of a twisted and swept blade, with which a match begins: with three and two control points for angles and tangents a
+propeller, whose slices are within 2 deg of its metal angles, was searched away from these to 89 deg
+(design/matching.md)"""
+
+
+def _with_each(structure: Structure, laws: Iterable[ResizableLaw], count: Callable[..., int]) -> Structure:
+    """The structure with `count` control points of laws, by the law, which of its numbers it is, and that number."""
+    counts = {law.name: tuple(count(law, i, n) for i, n in enumerate(structure.counts[law.name])) for law in laws}
+    return replace(structure, counts={**structure.counts, **counts})
+
+
+def richest(design: Design) -> Structure:
+    """The structure with all the control points that a match may begin with."""
+
+    def rich(law: ResizableLaw, place: int, own: int) -> int:
+        return max(own, min(law.rich[place], law.limits()[1][place]))
+
+    return _with_each(structure_of(design), resizable_laws(design), rich)
+
+
+def rows_shown(v: Reals) -> int:
+    """How many control points along the span points at v (n,) show: the most equal parts of it of which each has some.
+
+    A spline's control points are determined where each basis function has a place of its own (Schoenberg and Whitney
+    1953): a blade that is measured in four sections determines four.
+    """
+    counts = range(MOST_SPAN, 1, -1)
+    return next((n for n in counts if len(np.unique(np.minimum((n * v).astype(int), n - 1))) == n), 1)
+
 
 THINNER_EDGES, MOST_THINNINGS = 0.7, 12
 """ratio by which the thickness beside the edges is reduced at a time, `MOST_THINNINGS` times at most."""
@@ -104,26 +150,35 @@ def wider_structure(
     and no more.
     """
     own = structure_of(design)
-    wide, share = (own, 2) if slim else (richest(design), 3)
-    for law in resizable_laws(design):
-        counts = zip(own.counts[law.name], wide.counts[law.name], law.limits()[1], strict=True)
-        more = [max(few, min(count + max(1, count // share), most)) for count, few, most in counts]
-        if own.samples and law.name in THICKNESSES and own.counts[law.name][0] < own.samples - SPARE_SAMPLES:
-            more[0] = min(more[0], own.samples - SPARE_SAMPLES)
-        wide = wide.resized(law.name, tuple(more))
-    return _towards(wide, design, free, points, rows)
+    least, share = (own, 2) if slim else (richest(design), 3)
+
+    def wider(law: ResizableLaw, place: int, count: int) -> int:
+        most = law.limits()[1][place]
+        if own.samples and law.name in THICKNESSES and place == 0 and count < own.samples - SPARE_SAMPLES:
+            most = own.samples - SPARE_SAMPLES
+        return max(least.counts[law.name][place], min(count + max(1, count // share), most))
+
+    return _towards(_with_each(own, resizable_laws(design), wider), design, free, points, rows)
 
 
 def _towards(whole: Structure, design: Design, free: Collection[str], points: int, rows: int) -> Structure:
-    """A structure with more control points than a design's own, or as large a share of them as the points allow."""
-    whole, own = (within_rows(each, design, rows) for each in (whole, structure_of(design)))
-    laws = [law for law in resizable_laws(design) if not set(free).isdisjoint(law.paths(design) or free)]
+    """A structure with more control points than a design's own, or as large a share of them as the points allow.
+
+    Along the span it has no more of them than rows, but the fewest that its laws may have.
+    """
+
+    def within_rows(law: ResizableLaw, place: int, count: int) -> int:
+        return max(min(count, rows), law.limits()[0][place]) if place in law.along_span else count
+
+    laws = resizable_laws(design)
+    whole, own = (_with_each(each, laws, within_rows) for each in (whole, structure_of(design)))
+    freed = [law for law in laws if not set(free).isdisjoint(law.paths(design) or free)]
     for share in SHARES:
-        rich = own
-        for law in laws:
-            counts = zip(own.counts[law.name], whole.counts[law.name], strict=True)
-            rich = rich.resized(law.name, tuple(count + round(share * (most - count)) for count, most in counts))
-        rich = rich.with_samples(own.samples)
+
+        def towards(law: ResizableLaw, place: int, count: int, share: float = share) -> int:
+            return count + round(share * (whole.counts[law.name][place] - count))
+
+        rich = _with_each(own, freed, towards).with_samples(own.samples)
         if len(reshaped(design, rich).parameters()) * POINTS_PER_PARAMETER <= points:
             break
     return rich

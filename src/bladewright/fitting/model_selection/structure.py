@@ -1,27 +1,48 @@
-"""How many control points the laws of a design have, apart from their values; and those that a match begins with."""
+"""How many control points the laws and curves of a design have, apart from their values."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import singledispatch
+from itertools import groupby, pairwise
 from typing import Any
 
 import numpy as np
 
+from bladewright.blade.design.meridional_curve import ThroughPoints
+from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.blade.design.unified import UnifiedBlade
-from bladewright.designs import Design, Stations
+from bladewright.designs import Design, Part, Stations
 from bladewright.errors import FitError
-from bladewright.fitting.model_selection.laws import (
-    COMPARED_PLACES,
-    MOST_SPAN,
+from bladewright.fitting.free_parameters import EDGES, WALLS, sliding_coordinate
+from bladewright.fitting.model_selection.curves import (
+    FEWEST_ON_WALL,
     ChannelCurves,
-    Chordwise,
+    CurvePoints,
+    SegmentPoints,
+    WallPoints,
+)
+from bladewright.fitting.model_selection.laws import (
+    ALONG_SPAN,
+    COMPARED_PLACES,
+    MOST_CHORD,
+    ONE,
     Counts,
+    HeightsLaw,
     ResizableLaw,
+    Row,
     SpanLaw,
 )
+from bladewright.fitting.models.sectioned import SINGLE_SECTION
+from bladewright.numerics.elementary import cumulative_length
 from bladewright.nurbs.basis import Reals
+from bladewright.section.camber_angle import CamberAngle
+from bladewright.section.curvature_meanline import CurvatureMeanline
+from bladewright.section.laws import named_laws, number_paths
+from bladewright.section.segmented.part import SegmentedSection
+from bladewright.section.segmented.skin import SEGMENTS
+from bladewright.section.suction_pressure.part import SuctionPressure
 from bladewright.section.unified import UnifiedSection
-from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNESSES
+from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNESSES, WEIGHTS
 from bladewright.section.unified_sides import sample_places
 
 FEWEST_THICKNESSES = 3
@@ -36,6 +57,150 @@ SPANWISE = (*ANGLES, *TANGENTS, *RADII)
 """laws along the span of the unified family, besides the position of the leading edge and the thicknesses"""
 POSITIONS = ("leading_edge_theta", "leading_edge_y")
 """fields of the position of the leading edge"""
+RICH_CHORDWISE = {2: 24, 3: 9}
+"""control points along the chord of a rich structure of the unified family, by dimension. Nine have six spans, whose
+knots include those of one, two and three: cubic laws of 4, 5 and 6 control points are special cases of theirs
+(design/matching.md)."""
+RICH_SPAN = {"thickness": 6, "radius": 4, "": 9}
+"""control points along the span of its laws, by what their names say: six hold cubic laws of 4, nine of 4, 5 and 6."""
+RICH_CHANNEL = (9, 9, 6, 6)
+"""control points of the edges, of hub and of shroud: six hold cubic curves of 4, nine of 4, 5 and 6."""
+RICH_SECTION = {2: 12, 3: 8}
+"""control points along the chord of a rich structure of sections of other families, by dimension"""
+RICH_SECTION_SPAN = 5
+"""control points along the span of their laws"""
+RICH_CURVE = 8
+"""points on an edge curve or a wall of a rich structure: as many as on a channel's edges"""
+RICH_SEGMENT = 5
+"""inner control points of a segment in a rich structure, of a section that stands alone: they hold segments of one"""
+
+
+@singledispatch
+def chordwise_rows(part: Any) -> dict[str, Row]:  # noqa: ARG001 - most parts have none
+    """The rows along the chord of a part whose number of control points may change: those without given places."""
+    return {}
+
+
+@chordwise_rows.register
+def _(part: UnifiedSection | UnifiedBlade) -> dict[str, Row]:
+    # where the samples of the sides stand, a thickness matters most
+    samples = sample_places(part.samples, part.clustering)[2:-2]
+    compared = np.sort(np.concatenate([samples, COMPARED_PLACES]))
+    row = Row(fewest=FEWEST_THICKNESSES, most=MOST_SAMPLES - SPARE_SAMPLES, compared=compared)
+    return dict.fromkeys(THICKNESSES, row)
+
+
+@chordwise_rows.register
+def _(part: CamberAngle) -> dict[str, Row]:
+    found = {"camber_angle": Row(fewest=1, most=MOST_CHORD)}
+    if not (part.thickness_places or part.thickness_weights):
+
+        def places(count: int) -> Reals:
+            outline = replace(part, half_thickness=(0.01,) * count).outline(SINGLE_SECTION)
+            return np.asarray(np.real(outline.places.controls)[0])
+
+        held = 1, 0 if part.trailing_edge == "blunt" else 1
+        found["half_thickness"] = Row(fewest=3, most=MOST_CHORD, held=held, places=places)
+    return found
+
+
+@chordwise_rows.register
+def _(part: CurvatureMeanline) -> dict[str, Row]:
+    found = {}
+    if part.curvature and not part.curvature_places:
+        found["curvature"] = Row(fewest=2, most=MOST_CHORD)
+    if not part.thickness_multiplier_places:
+        found["thickness_multiplier"] = Row(fewest=3, most=MOST_CHORD, optional=True)
+    return found
+
+
+@chordwise_rows.register
+def _(part: SuctionPressure) -> dict[str, Row]:
+    heights = {name: getattr(part, f"{name}_heights") for name in ("suction", "pressure")}
+    return {
+        f"{name}_heights": Row(fewest=1, most=MOST_CHORD, held=(2, 2))
+        for name, row in heights.items()
+        if row and not (getattr(part, f"{name}_places") or getattr(part, f"{name}_knots"))
+    }
+
+
+@singledispatch
+def resizable_curves(design: Any) -> list[ResizableLaw]:  # noqa: ARG001 - most designs have none
+    """The curves of a design whose number of control points or points may change."""
+    return []
+
+
+@resizable_curves.register
+def _(design: UnifiedBlade) -> list[ResizableLaw]:
+    return [ChannelCurves(name="channel", rich=RICH_CHANNEL, degree=design.channel.degree)]
+
+
+@resizable_curves.register
+def _(design: SectionedBlade) -> list[ResizableLaw]:
+    found: list[ResizableLaw] = []
+    for edge in EDGES:
+        if isinstance(getattr(design, edge), ThroughPoints):
+            axes = "x" if sliding_coordinate(design, edge) == "r" else "r"
+            found.append(CurvePoints(name=edge, rich=(RICH_CURVE,), axes=axes))
+    for wall in WALLS:
+        curve = getattr(design.flow_path, wall)
+        if isinstance(curve, ThroughPoints) and len(curve.points) >= FEWEST_ON_WALL:
+            way = cumulative_length(np.real(np.array([tuple(each) for each in curve.points])))
+            stations = tuple((way / way[-1]).tolist())
+            found.append(WallPoints(name=f"flow_path.{wall}", rich=(RICH_CURVE,), axes="xr", stations=stations))
+    return found
+
+
+@resizable_curves.register
+def _(design: SegmentedSection) -> list[ResizableLaw]:
+    """The inner control points of the segments, but for those whose skin morphs."""
+    found: list[ResizableLaw] = []
+    part = design.section
+    for sign, side in ((1.0, "upper"), (-1.0, "lower")):
+        given = getattr(part, side)
+        joints = [0 if part.nose is None else part.nose.continuity, given.front_joint.continuity]
+        joints += [given.rear_joint.continuity, 0]
+        for segment, (front, rear) in zip(SEGMENTS, pairwise(joints), strict=True):
+            if getattr(given, segment).skin is None:
+                name, held = f"section.{side}.{segment}", (1 + front, 1 + rear)
+                found.append(SegmentPoints(name=name, rich=(RICH_SEGMENT,), sign=sign, held=held))
+    return found
+
+
+def sized_laws(design: Any) -> list[ResizableLaw]:
+    """The laws and curves of a design whose numbers of control points are its structure."""
+    if not isinstance(design, Design):
+        raise FitError(
+            f"a {type(design).__name__} has no laws that a fit knows: give a design of the unified family, or another"
+        )
+    part = getattr(design, "section", design)
+    stem, rich = ("", RICH_CHORDWISE) if part is design else ("section.", RICH_SECTION)
+    rows, span = chordwise_rows(part), ALONG_SPAN if design.dimension == 3 else ONE
+    found: list[ResizableLaw] = []
+    for name, row in rows.items():
+        numbers = rich[design.dimension], _rich_span(stem, name)
+        # of the control points of a second derivative only the ratios count, so that the largest is held
+        kind = HeightsLaw if name.endswith("_heights") else SpanLaw
+        found.append(kind(name=f"{stem}{name}", rich=numbers, row=row, span=span, holds_corners=name == "curvature"))
+    for path, _ in named_laws(design) if design.dimension == 3 else ():
+        in_row = path.removeprefix(stem).partition("[")[0] in rows
+        if (path.startswith(stem) or path in POSITIONS) and not (in_row or path.startswith(WEIGHTS)):
+            found.append(SpanLaw(name=path, rich=(1, _rich_span(stem, path))))
+    return [*found, *resizable_curves(design)]
+
+
+def _rich_span(stem: str, name: str) -> int:
+    """Control points along the span of a law of a rich structure."""
+    return RICH_SECTION_SPAN if stem else next(most for word, most in RICH_SPAN.items() if word in name)
+
+
+def lines_of(part: Part, stem: str) -> Iterator[list[str]]:
+    """Paths of control points in a row, for every law along the span of the part at a path and every row of laws."""
+    for _, row in groupby(named_laws(part), key=lambda each: each[0].partition("[")[0]):
+        lines = [number_paths(law, f"{stem}.{path}") for path, law in row]
+        yield from lines
+        if len({len(line) for line in lines}) == 1:
+            yield from (list(column) for column in zip(*lines, strict=True))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,14 +227,6 @@ class Structure:
         return replace(self, samples=min(MOST_SAMPLES, max(least, needed)))
 
 
-@singledispatch
-def sized_laws(design: Any) -> list[ResizableLaw]:
-    """The laws of a design whose numbers of control points are its structure."""
-    raise FitError(
-        f"a {type(design).__name__} has no laws that a fit knows: give a design of the unified family, or another"
-    )
-
-
 def structure_of(design: Design) -> Structure:
     """The structure of a design."""
     laws = sized_laws(design)
@@ -88,8 +245,8 @@ def resizable_laws(design: Design) -> list[ResizableLaw]:
 
 def reshaped(design: Design, structure: Structure) -> Any:
     """A design of another structure whose laws and curves are nearest to those of `design`, by least squares."""
-    laws = sized_laws(design)
     changes: dict[str, Any] = {}
+    laws = sized_laws(design)
     for law in laws:
         counts = structure.counts.get(law.name, law.counts_of(design))
         changes[law.name] = law.resized(design, counts, structure.stations.get(law.name))
@@ -99,87 +256,3 @@ def reshaped(design: Design, structure: Structure) -> Any:
     for law in laws:
         found = law.settled(design, found)
     return found
-
-
-def richest(design: Design) -> Structure:
-    """The structure with all the control points that a match may begin with."""
-    found = structure_of(design)
-    for law in resizable_laws(design):
-        counts = zip(found.counts[law.name], law.rich, law.limits()[1], strict=True)
-        found = found.resized(law.name, tuple(max(own, min(rich, most)) for own, rich, most in counts))
-    return found
-
-
-def within_rows(structure: Structure, design: Design, rows: int) -> Structure:
-    """A structure with no more control points along the span than rows, but the fewest that its laws may have."""
-    for law in resizable_laws(design):
-        counts, least = list(structure.counts[law.name]), law.limits()[0]
-        for place in law.along_span:
-            counts[place] = max(min(counts[place], rows), least[place])
-        structure = structure.resized(law.name, tuple(counts))
-    return structure
-
-
-def rows_shown(v: Reals) -> int:
-    """How many control points along the span points at v (n,) show: the most equal parts of it of which each has some.
-
-    A spline's control points are determined where each basis function has a place of its own (Schoenberg and Whitney
-    1953): a blade that is measured in four sections determines four.
-    """
-    counts = range(MOST_SPAN, 1, -1)
-    return next((n for n in counts if len(np.unique(np.minimum((n * v).astype(int), n - 1))) == n), 1)
-
-
-RICH_CHORDWISE = {2: 24, 3: 9}
-"""control points along the chord of a rich structure, by dimension. Nine have six spans, whose knots include those of
-one, two and three: cubic laws of 4, 5 and 6 control points are special cases of theirs (design/matching.md)."""
-RICH_SPAN = {"thickness": 6, "radius": 4, "": 9}
-"""control points along the span of its laws, by what their names say: six hold cubic laws of 4, nine of 4, 5 and 6."""
-RICH_CHANNEL = (9, 9, 6, 6)
-"""control points of the edges, of hub and of shroud: six hold cubic curves of 4, nine of 4, 5 and 6."""
-ALLOWED = {
-    **dict.fromkeys(ANGLES, (-88.0, 88.0)),
-    **dict.fromkeys(TANGENTS, (0.03, 0.99)),
-    **dict.fromkeys(RADII, (1e-4, 0.9)),
-}
-"""within which a law is kept that another number of control points would carry past the family's own limits"""
-
-
-@sized_laws.register
-def _(design: UnifiedSection | UnifiedBlade) -> list[ResizableLaw]:
-    spanwise = isinstance(design, UnifiedBlade)
-    # where the samples of the sides stand, a thickness matters most
-    samples = sample_places(design.samples, design.clustering)[2:-2]
-    row = Chordwise(
-        fewest=FEWEST_THICKNESSES,
-        most=MOST_SAMPLES - SPARE_SAMPLES,
-        compared=np.sort(np.concatenate([samples, COMPARED_PLACES])),
-    )
-    rich = RICH_CHORDWISE[3 if spanwise else 2], RICH_SPAN["thickness"]
-    laws: list[ResizableLaw] = [SpanLaw(name, rich, row, spanwise) for name in THICKNESSES]
-    if not isinstance(design, UnifiedBlade):
-        return laws
-    for name in (*SPANWISE, POSITIONS[0] if design.arrangement == "annular" else POSITIONS[1]):
-        count = next(most for word, most in RICH_SPAN.items() if word in name)
-        laws.append(SpanLaw(name, (1, count), allowed=ALLOWED.get(name, (-np.inf, np.inf))))
-    return [*laws, ChannelCurves("channel", RICH_CHANNEL, design.channel.degree)]
-
-
-FIRST_ANGLES, FIRST_TANGENTS, FIRST_RADII = 4, 3, 2
-"""control points along the span of a first blade's angles and position, tangents and radii: free enough to find its
-edges"""
-FIRST_SECTION = Structure(counts=dict.fromkeys(THICKNESSES, (6, 1)), samples=16)
-"""of a section with which a match begins"""
-FIRST_BLADE = Structure(
-    counts={
-        **dict.fromkeys((*ANGLES, *POSITIONS), (1, FIRST_ANGLES)),
-        **dict.fromkeys(TANGENTS, (1, FIRST_TANGENTS)),
-        **dict.fromkeys(RADII, (1, FIRST_RADII)),
-        **dict.fromkeys(THICKNESSES, (6, 3)),
-        "channel": (4, 5, 4, 4),
-    },
-    samples=16,
-)
-"""of a twisted and swept blade, with which a match begins: with three and two control points for angles and tangents a
-propeller, whose slices are within 2 deg of its metal angles, was searched away from these to 89 deg
-(design/matching.md)"""

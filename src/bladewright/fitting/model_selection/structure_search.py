@@ -37,8 +37,13 @@ from bladewright.fitting.model_selection.elimination import (
     reweighted,
     reweighted_prediction,
 )
-from bladewright.fitting.model_selection.reshaping import rich_structure, widened_where_feasible, wider_structure
-from bladewright.fitting.model_selection.structure import reshaped, rows_shown
+from bladewright.fitting.model_selection.reshaping import (
+    rich_structure,
+    rows_shown,
+    widened_where_feasible,
+    wider_structure,
+)
+from bladewright.fitting.model_selection.structure import reshaped
 from bladewright.nurbs.basis import Reals
 
 REFUSED_MARGIN = 6.0

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import comb
 
 from bladewright.blade.native.blade import Blade
 from bladewright.fitting.matching.footpoints import Footpoints
@@ -56,30 +57,23 @@ def side_bounds(blunt: BluntEdges) -> tuple[float, float]:
 
 def closed_with(upper: Surface, lower: Surface, faces: Mapping[str, Surface]) -> tuple[Surface, Surface]:
     """Two sides of a blade with the halves of the faces of its blunt edges, given by name."""
-    blunt = "leading_edge" in faces, "trailing_edge" in faces
-    if not any(blunt):
+    if not faces:
         return upper, lower
-    degree = upper.degree_u
-    knots = closed_knots(upper.knots_u, degree, blunt)
+    knots = closed_knots(upper.knots_u, upper.degree_u, ("leading_edge" in faces, "trailing_edge" in faces))
     found = []
-    for side, first in ((upper, True), (lower, False)):
-        parts = [side.control_points]
-        for name in faces:
-            halves = _halved(faces[name].control_points)
-            half = halves[0] if first else halves[1][::-1]
-            parts = [half[:0:-1], *parts] if name == "leading_edge" else [*parts, half[1:]]
-        found.append(replace(side, control_points=np.concatenate(parts), knots_u=knots))
+    for side, step in ((upper, 1), (lower, -1)):
+        net = side.control_points
+        for name, face in faces.items():
+            half = _first_half(face.control_points[::step])
+            net = np.concatenate([half[:0:-1], net] if name == "leading_edge" else [net, half[1:]])
+        found.append(replace(side, control_points=net, knots_u=knots))
     return found[0], found[1]
 
 
-def _halved(net: Reals) -> tuple[Reals, Reals]:
-    """Both halves of a polynomial with control points (n, ...), by de Casteljau's construction."""
-    rows, first, last = net, [net[0]], [net[-1]]
-    while len(rows) > 1:
-        rows = 0.5 * (rows[:-1] + rows[1:])
-        first.append(rows[0])
-        last.append(rows[-1])
-    return np.stack(first), np.stack(last[::-1])
+def _first_half(net: Reals) -> Reals:
+    """The first half of a polynomial with control points (n, ...), by de Casteljau's construction."""
+    number = np.arange(len(net))
+    return np.tensordot(comb(number[:, None], number) / 2.0 ** number[:, None], net, axes=1)
 
 
 def sides_of(built: Blade | Section) -> tuple[Curve, Curve] | tuple[Surface, Surface]:

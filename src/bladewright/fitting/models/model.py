@@ -4,7 +4,7 @@ A model refuses nothing that a step of a search may pass on its way, and holds t
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import singledispatch
 from typing import Any, cast
@@ -13,7 +13,7 @@ import numpy as np
 
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.knots import DEGREE, Knots, clamped
-from bladewright.derivatives.complex_step import STEP, Nets, side_tangents, step_tangents, steps_of
+from bladewright.derivatives.complex_step import STEP, Nets, step_tangents, steps_of
 from bladewright.designs import Design
 from bladewright.errors import FitError
 from bladewright.fitting.matching.footpoints import Footpoints, Side
@@ -21,6 +21,7 @@ from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array, cross2
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.collocation import collocation
+from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.surface import Surface
 
 FOLD_GRID = (41, 21)
@@ -70,45 +71,31 @@ class Model(ABC):
         """The sides of a design; invalid operations leave values that are not finite."""
 
     @abstractmethod
-    def tangents(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
-        """Derivatives (k, ..., d) of both sides' homogeneous control points by parameters."""
+    def along(self, shape: ModelShape, footpoints: Footpoints, directions: Reals, paths: Sequence[str]) -> Reals:
+        """Derivatives (n, k) of the footpoints along directions (n, d) by parameters, at held surface parameters."""
 
     def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """Derivatives (k, ...) of `shape.edge_radius_margins`."""
         return np.zeros((len(paths), *shape.edge_radius_margins.shape))
 
+    @abstractmethod
     def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """Derivatives (k, c) of `shape.constraints`."""
-        return np.zeros((len(paths), len(shape.constraints)))
-
-    def along(self, shape: ModelShape, footpoints: Footpoints, directions: Reals, paths: Sequence[str]) -> Reals:
-        """Derivatives (n, k) of the footpoints along directions (n, d), at held surface parameters."""
-        return np.einsum("nkd,nd->nk", self.rates(shape, footpoints, self.tangents(shape, paths)), directions)
-
-    @staticmethod
-    def rates(shape: ModelShape, footpoints: Footpoints, tangents: tuple[Reals, Reals]) -> Reals:
-        """Derivatives (n, k, d) of the footpoints, at held surface parameters."""
-        count = len(tangents[0])
-        found = np.empty((len(footpoints.u), count, footpoints.points.shape[1]))
-        for number, (side, rates) in enumerate(zip(shape.sides, tangents, strict=True)):
-            rows = np.flatnonzero(footpoints.side == number)
-            if len(rows) == 0:
-                continue
-            matrix = collocation(side, footpoints.u[rows], footpoints.v[rows])
-            columns = np.moveaxis(rates, 0, -2).reshape(-1, count * rates.shape[-1])
-            moved_places = (matrix @ columns).reshape(len(rows), count, rates.shape[-1])
-            if side.weights is not None:
-                weight = (matrix @ np.ravel(side.weights))[:, None, None]
-                share = footpoints.points[rows, None] * moved_places[..., -1:]
-                moved_places = (moved_places[..., :-1] - share) / weight
-            found[rows] = moved_places
-        return found
 
 
 @singledispatch
 def model_of(design: Design, tolerance: float | None = None) -> Model:  # noqa: ARG001 - the contract's
     """The model of a kind of design, with the knots that the design needs for a tolerance, of the chord."""
     raise FitError(f"a {type(design).__name__} cannot be fitted: give a design of the unified family")
+
+
+def place_rates(on: Side, rates: Reals, u: Reals, v: Reals) -> Reals:
+    """Derivatives (n, k, d) of homogeneous places by those (k, ..., d) of the control points of what they lie on."""
+    if len(u) == 0:
+        return np.zeros((0, len(rates), rates.shape[-1]))
+    matrix = collocation(on, u, v)
+    columns = np.moveaxis(rates, 0, -2).reshape(matrix.shape[1], -1)
+    return np.asarray(matrix @ columns).reshape(len(u), len(rates), rates.shape[-1])
 
 
 def complex_steps(design: Design, paths: Sequence[str]) -> Mapping[str, Any]:
@@ -128,6 +115,66 @@ def fold_margins(own: tuple[Array, Array], moved: tuple[Array, Array]) -> Array:
     return np.asarray(SMALLEST_JACOBIAN - share.reshape(*share.shape[:-2], -1))
 
 
+def stepped_rates(
+    shape: ModelShape, paths: Sequence[str], moving: str | tuple[str, ...], count: int, values: Callable[[Any], Array]
+) -> Reals:
+    """Derivatives (k, count) of what a design gives by those parameters whose paths begin with `moving`; else zero."""
+    found = np.zeros((len(paths), count))
+    own = [place for place, path in enumerate(paths) if path.startswith(moving)]
+    if count and own:
+        stepped = shape.design.changed(complex_steps(shape.design, [paths[place] for place in own]))
+        found[own] = np.imag(values(stepped)) / STEP
+    return found
+
+
+class SectionModel(Model):
+    """A kind of section: all that a search sees of it comes from one rebuild, with a complex step on each parameter."""
+
+    def __init__(self) -> None:
+        self._last: tuple[ModelShape | None, tuple[str, ...], list[Reals]] = (None, (), [])
+
+    @abstractmethod
+    def _parts(self, design: Any) -> tuple[Array, Array, Array, Array]:
+        """Homogeneous control points (..., n, d) of both sides, edge radius margins (..., 2, c) and constraints."""
+
+    @abstractmethod
+    def _side(self, net: Reals) -> Curve:
+        """The side with these control points."""
+
+    def _shape(self, design: Any) -> ModelShape:
+        upper, lower, margins, constraints = map(np.real, self._parts(design))
+        sides = self._side(upper), self._side(lower)
+        return ModelShape(design=design, sides=sides, edge_radius_margins=margins, constraints=constraints)
+
+    def along(self, shape: ModelShape, footpoints: Footpoints, directions: Reals, paths: Sequence[str]) -> Reals:
+        found = np.empty((len(footpoints.u), len(paths)))
+        for number, (side, rates) in enumerate(zip(shape.sides, self.rates(shape, paths)[:2], strict=True)):
+            rows = np.flatnonzero(footpoints.side == number)
+            u, v = footpoints.u[rows], footpoints.v[rows]
+            moved = place_rates(side, rates, u, v)
+            if side.weights is not None:
+                weight = place_rates(side, side.weights[None, :, None], u, v)
+                moved = (moved[..., :-1] - footpoints.points[rows, None] * moved[..., -1:]) / weight
+            found[rows] = np.einsum("nkd,nd->nk", moved, directions[rows])
+        return found
+
+    def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
+        return self.rates(shape, paths)[2]
+
+    def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
+        return self.rates(shape, paths)[3]
+
+    def rates(self, shape: ModelShape, paths: Sequence[str]) -> list[Reals]:
+        """Derivatives (k, ...) of all parts by parameters, kept for the next that asks for them."""
+        known, asked, rates = self._last
+        if known is not shape or asked != tuple(paths):
+            parts = self._parts(shape.design.changed(complex_steps(shape.design, paths)))
+            own = [part.shape[-axes:] for part, axes in zip(parts, (2, 2, 2, 1), strict=True)]
+            rates = [np.imag(np.broadcast_to(p, (len(paths), *one))) / STEP for p, one in zip(parts, own, strict=True)]
+            self._last = shape, tuple(paths), rates
+        return rates
+
+
 class SpatialModel(Model):
     """A kind of blade, at the knots that one design needs for a tolerance."""
 
@@ -136,12 +183,6 @@ class SpatialModel(Model):
     @abstractmethod
     def _closed(self, upper: Reals, lower: Reals) -> Nets:
         """Rates (k, n_u, n_v, 3) of the sides that close the blade by those of the native sides."""
-
-    def tangents(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
-        """By all parameters that move a section by their weight at its span fraction in one step."""
-        pairs = list(side_tangents(self._blade(shape, self.knots), paths))
-        upper, lower = (np.concatenate([pair[side] for pair in pairs]) for side in (0, 1))
-        return self._closed(upper, lower)
 
     def along(self, shape: ModelShape, footpoints: Footpoints, directions: Reals, paths: Sequence[str]) -> Reals:
         """By the weights at the footpoints themselves, times what a common step of several parameters does there.
@@ -163,9 +204,7 @@ class SpatialModel(Model):
                 degree_u=DEGREE,
                 degree_v=DEGREE,
             )
-            matrix = collocation(on, footpoints.u[rows], footpoints.v[rows])
-            columns = np.moveaxis(net, 0, 2).reshape(matrix.shape[1], -1)
-            moved = (matrix @ columns).reshape(len(rows), len(steps), 3)
+            moved = place_rates(on, net, footpoints.u[rows], footpoints.v[rows])
             rates[rows] = np.einsum("nkd,nd->nk", moved, directions[rows])
         weights = [step.weights(footpoints.v) for step in steps]
         return np.stack([rates[:, step] * weights[step][:, place] for step, place in sources], axis=1)

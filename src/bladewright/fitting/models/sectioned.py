@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import singledispatch
 from typing import Any, final
 
 import numpy as np
@@ -16,18 +17,19 @@ from bladewright.blade.native.blade import side_surface
 from bladewright.blade.native.interpolation import edge_faces, native_sides
 from bladewright.blade.native.knots import Knots
 from bladewright.blade.native.refinement import mean_chord, refined_knots
-from bladewright.derivatives.complex_step import STEP, Nets
+from bladewright.derivatives.complex_step import Nets
 from bladewright.fitting.models.blunt_edges import BluntEdges, closed_knots, closed_nets, closed_with
 from bladewright.fitting.models.model import (
     FOLD_GRID,
     Model,
     ModelShape,
+    SectionModel,
     SpatialModel,
-    complex_steps,
     fold_margins,
     model_of,
+    stepped_rates,
 )
-from bladewright.numerics.elementary import Array, radians
+from bladewright.numerics.elementary import Array, concatenated, radians
 from bladewright.nurbs.basis import Reals, greville
 from bladewright.nurbs.curve import Curve
 from bladewright.section.camber_angle import CamberAngle
@@ -37,7 +39,6 @@ from bladewright.section.laws import Span
 from bladewright.section.native import DEGREE, interpolated_along_u, side_knots_for
 from bladewright.section.outline import Edge, EdgeDerivatives
 from bladewright.section.planar import PlanarSection
-from bladewright.section.segmented.outline import SegmentedOutline
 from bladewright.section.segmented.part import Segmented
 from bladewright.section.suction_pressure.edges import MAX_OPENING, opening
 from bladewright.section.suction_pressure.limits import CHECKED_AT, gaps
@@ -62,31 +63,22 @@ OPENING_MARGIN = 0.003
 
 
 @final
-class PlanarModel(Model):
+class PlanarModel(SectionModel):
     """A section of such a family, at the knots that one design needs for a tolerance, of the chord."""
 
     def __init__(self, design: PlanarSection, tolerance: float | None = None) -> None:
+        super().__init__()
         self.chord = float(np.real(design.chord)) * UNITS[design.length_unit]
         outline = design.section.outline(SINGLE_SECTION)
         self.knots: Reals = side_knots_for(outline, design.tolerance if tolerance is None else tolerance)
         self.blunt: BluntEdges = outline.leading_edge.kind == "blunt", outline.trailing_edge.kind == "blunt"
         self.closed = closed_knots(self.knots, DEGREE, self.blunt)
 
-    def _shape(self, design: Any) -> ModelShape:
-        upper, lower = (np.real(net) for net in self._nets(design))
-        sides = [Curve(control_points=net, knots=self.closed, degree=DEGREE) for net in (upper, lower)]
-        constraints = np.real(infeasibility(design.section, SINGLE_SECTION))
-        return ModelShape(design=design, sides=(sides[0], sides[1]), constraints=constraints)
+    def _side(self, net: Reals) -> Curve:
+        return Curve(control_points=net, knots=self.closed, degree=DEGREE)
 
-    def tangents(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
-        """From one rebuild with a complex step on each parameter in a batch."""
-        nets = self._nets(shape.design.changed(complex_steps(shape.design, paths)))
-        upper, lower = (np.imag(np.broadcast_to(net, (len(paths), *net.shape[-2:]))) / STEP for net in nets)
-        return upper, lower
-
-    def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
-        """Derivatives of the section's infeasibility."""
-        return infeasibility_rates(shape, paths, SINGLE_SECTION, len(shape.constraints))
+    def _parts(self, design: Any) -> tuple[Array, Array, Array, Array]:
+        return *self._nets(design), np.zeros((2, 0)), infeasibility(design.section, SINGLE_SECTION)
 
     def _nets(self, design: Any) -> tuple[Array, Array]:
         """Control points (..., n, 2) of both sides where the section stands [m]."""
@@ -118,16 +110,6 @@ def _net(points: Array, edges: tuple[Edge, Edge], name: str, knots: Reals) -> Ar
     rows = [EdgeDerivatives(*(np.broadcast_to(each, (*batch, 1, 2)) for each in start)) for start in starts]
     lines = np.broadcast_to(points, (*batch, *points.shape[-3:]))
     return interpolated_along_u(np.swapaxes(lines, -3, -2), rows[0], rows[1], knots)[..., 0, :]
-
-
-def infeasibility_rates(shape: ModelShape, paths: Sequence[str], span: Span, count: int) -> Reals:
-    """Derivatives (k, count) of the infeasibility of sections by every parameter."""
-    found = np.zeros((len(paths), count))
-    own = [i for i, path in enumerate(paths) if path.startswith("section.")]
-    if count and own:
-        design = shape.design.changed(complex_steps(shape.design, [paths[i] for i in own]))
-        found[own] = np.imag(infeasibility(design.section, span)) / STEP
-    return found
 
 
 @model_of.register
@@ -166,13 +148,16 @@ class SectionedModel(SpatialModel):
 
     def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """Derivatives of the sections' infeasibility, and of how near flow path and edges are to what is refused."""
-        margins = np.zeros((len(paths), len(_flow_path_margins(shape.exact, shape.exact))))
-        own = infeasibility_rates(shape, paths, FEASIBILITY_SPAN, len(shape.constraints) - margins.shape[1])
-        moving = [place for place, path in enumerate(paths) if path.startswith(PLACING[:3])]
-        if moving:
-            moved = shape.exact.moved_to(shape.design.changed(complex_steps(shape.design, [paths[i] for i in moving])))
-            margins[moving] = np.imag(_flow_path_margins(shape.exact, moved)) / STEP
-        return np.concatenate([own, margins], axis=1)
+
+        def own(design: Any) -> Array:
+            return infeasibility(design.section, FEASIBILITY_SPAN)
+
+        def margins(design: Any) -> Array:
+            return _flow_path_margins(shape.exact, shape.exact.moved_to(design))
+
+        count = len(_flow_path_margins(shape.exact, shape.exact))
+        rates = stepped_rates(shape, paths, "section.", len(shape.constraints) - count, own)
+        return np.concatenate([rates, stepped_rates(shape, paths, PLACING[:3], count, margins)], axis=1)
 
 
 def _flow_path_margins(exact: Any, moved: Any) -> Array:
@@ -189,8 +174,7 @@ def _flow_path_margins(exact: Any, moved: Any) -> Array:
     if isinstance(placement, PrescribedEdges):
         for _, place in placement.intersections(ENDS):
             rows += [MET_MARGIN - EXTENSION - place, place - 1.0 - EXTENSION + MET_MARGIN]
-    shape = np.broadcast_shapes(*[each.shape[:-1] for each in rows])
-    return np.concatenate([np.broadcast_to(each, (*shape, each.shape[-1])) for each in rows], axis=-1)
+    return concatenated(rows, axis=-1)
 
 
 @model_of.register
@@ -199,43 +183,46 @@ def _(design: SectionedBlade, tolerance: float | None = None) -> Model:
         return SectionedModel(design, tolerance)
 
 
-def infeasibility(part: Any, span: Span) -> Array:
+@singledispatch
+def infeasibility(part: Any, span: Span) -> Array:  # noqa: ARG001 - most parts are refused on their way by nothing
     """By how much sections at places along the span are nearer to a refusal than they may be (..., c).
 
     Values above 0 violate the margin. Raises DesignError where the sections are refused already.
     """
-    if isinstance(part, Segmented):
-        return _turning_back(part.outline(span))
-    if isinstance(part, CamberAngle):
-        steep = [each for each in part.outline(span).bends if each is not None]
-        return np.concatenate(np.broadcast_arrays(*steep), axis=-1) / STEEPEST - (1.0 - STEEP_MARGIN)
-    if not isinstance(part, SuctionPressure):
-        return np.zeros(0)
+    return np.zeros(0)
+
+
+@infeasibility.register
+def _(part: Segmented, span: Span) -> Array:
+    """By how much control points of segments lie ahead of the ones before them; those at the nose may."""
+    rows = []
+    for side in part.outline(span).sides:
+        for number, controls in enumerate(side.controls):
+            x = controls[..., 2 if number == 0 else 0 :, 0]
+            rows.append(x[..., :-1] - x[..., 1:])
+    found = concatenated(rows, axis=-1)
+    return found.reshape(*found.shape[:-2], -1)
+
+
+@infeasibility.register
+def _(part: CamberAngle, span: Span) -> Array:
+    steep = [each for each in part.outline(span).bends if each is not None]
+    return concatenated(steep, axis=-1) / STEEPEST - (1.0 - STEEP_MARGIN)
+
+
+@infeasibility.register
+def _(part: SuctionPressure, span: Span) -> Array:
     edges = edge_points(part, span)
     rows = [_opening_excess(part, edge, span) for edge in ("leading_edge", "trailing_edge")]
     suction, pressure = sides(part, span, *edges)
     rows.append(SMALLEST_GAP - (gaps(suction, pressure) if part.suction_side == "upper" else gaps(pressure, suction)))
     for side in (suction, pressure):
         rows += [SLOWEST_PACE - side.own_parameter(end, CHECKED_AT, 1) for end in (0, 1)]
-    shape = np.broadcast_shapes(*[each.shape[:-2] for each in rows])
-    return np.concatenate([np.broadcast_to(each, (*shape, *each.shape[-2:])).reshape(*shape, -1) for each in rows], -1)
-
-
-def _turning_back(outline: SegmentedOutline) -> Array:
-    """By how much control points of segments lie ahead of the ones before them; those at the nose may (..., c)."""
-    rows = []
-    for side in outline.sides:
-        for number, controls in enumerate(side.controls):
-            x = controls[..., 2 if number == 0 else 0 :, 0]
-            rows.append(x[..., :-1] - x[..., 1:])
-    shape = np.broadcast_shapes(*[each.shape[:-1] for each in rows])
-    return np.concatenate(
-        [np.broadcast_to(each, (*shape, each.shape[-1])).reshape(*shape[:-1], -1) for each in rows], -1
-    )
+    return concatenated([each.reshape(*each.shape[:-2], -1) for each in rows], axis=-1)
 
 
 def _opening_excess(part: SuctionPressure, edge: str, span: Span) -> Array:
-    """The same for the two ellipses of an edge (..., m, 2), by their opening."""
+    """By how much the opening of the two ellipses of an edge is larger than it may be (..., m, 2)."""
     stretch, skew, wedge = (span.values(getattr(part, f"{edge}_{each}")) for each in ("stretch", "skew", "wedge"))
     ratios = [opening(stretch * (1.0 + sign * skew), radians(wedge)) for sign in (1.0, -1.0)]
     return np.stack(np.broadcast_arrays(*ratios), axis=-1) - (MAX_OPENING[part.edges] - OPENING_MARGIN)

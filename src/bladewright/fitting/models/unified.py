@@ -17,13 +17,15 @@ from bladewright.fitting.models.model import (
     FOLD_GRID,
     Model,
     ModelShape,
+    SectionModel,
     SpatialModel,
-    complex_steps,
     fold_margins,
     model_of,
+    stepped_rates,
 )
 from bladewright.numerics.elementary import Array, concatenated, length
 from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.curve import Curve
 from bladewright.section.camber import camber_points
 from bladewright.section.checks import UNITS
 from bladewright.section.unified import UnifiedSection
@@ -39,47 +41,27 @@ what `build` promises. On Rotor 67 it saves half of the derivatives' time and ch
 
 
 @final
-class SectionModel(Model):
+class UnifiedSectionModel(SectionModel):
     """Sections of the unified family."""
 
     rounded = True
 
     def __init__(self, design: UnifiedSection) -> None:
+        super().__init__()
         slope = np.cos(np.radians(design.stagger))
         self.chord = float(design.axial_chord * UNITS[design.length_unit] / slope)
-        self._last: tuple[ModelShape | None, tuple[str, ...], list[Array]] = (None, (), [])
 
-    def _shape(self, design: Any) -> ModelShape:
+    def _parts(self, design: Any) -> tuple[Array, Array, Array, Array]:
         line, upper, lower = _outline(design)
-        sides = side_curve(upper[0]), side_curve(lower[0])
-        return ModelShape(
-            design=design,
-            sides=sides,
-            edge_radius_margins=np.real(_edge_radius_margins(design, line, upper, lower))[..., 0],
-        )
+        margins = np.moveaxis(_edge_radius_margins(design, line, upper, lower)[..., 0], 0, -2)
+        return upper[..., 0, :, :], lower[..., 0, :, :], margins, np.zeros(0)
 
-    def tangents(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
-        """From one rebuild with a complex step on each parameter in a batch; the edges' rates come from the same."""
-        _, *sides = self._stepped(shape, paths)
-        upper, lower = (np.imag(side)[:, 0] / STEP for side in sides)
-        return upper, lower
-
-    def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
-        """From the same rebuild as the tangents."""
-        found = np.imag(_edge_radius_margins(shape.design, *self._stepped(shape, paths)))[..., 0] / STEP
-        return np.moveaxis(found, 1, 0)
-
-    def _stepped(self, shape: ModelShape, paths: Sequence[str]) -> list[Array]:
-        known, asked, parts = self._last
-        if known is not shape or asked != tuple(paths):
-            found = _outline(shape.design.changed(complex_steps(shape.design, paths)))
-            parts = [np.broadcast_to(part, (len(paths), *part.shape[-3:])) for part in found]
-            self._last = shape, tuple(paths), parts
-        return parts
+    def _side(self, net: Reals) -> Curve:
+        return side_curve(net)
 
 
 @final
-class BladeModel(SpatialModel):
+class UnifiedBladeModel(SpatialModel):
     """Blades of the unified family, at the knots that one of them needs."""
 
     rounded = True
@@ -122,14 +104,11 @@ class BladeModel(SpatialModel):
 
     def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """From one channel with a complex step on each of its parameters in a batch."""
-        found = np.zeros((len(paths), len(shape.constraints)))
-        walls = [place for place, path in enumerate(paths) if path.startswith("channel.")]
-        if walls and shape.exact is not None:
-            steps = complex_steps(shape.design, [paths[place] for place in walls])
-            found[walls] = (
-                np.imag(_fold_margins(shape.exact, shape.exact.moved_to(shape.design.changed(steps)).channel)) / STEP
-            )
-        return found
+
+        def margins(design: Any) -> Array:
+            return _fold_margins(shape.exact, shape.exact.moved_to(design).channel)
+
+        return stepped_rates(shape, paths, "channel.", len(shape.constraints), margins)
 
 
 def _narrowest_places(design: UnifiedBlade, exact: ExactUnifiedBlade) -> Reals:
@@ -181,10 +160,10 @@ def _edge_radius_margins(design: Any, line: Array, upper: Array, lower: Array) -
 
 @model_of.register
 def _(design: UnifiedSection, tolerance: float | None = None) -> Model:  # noqa: ARG001 - the contract's
-    return SectionModel(design)
+    return UnifiedSectionModel(design)
 
 
 @model_of.register
 def _(design: UnifiedBlade, tolerance: float | None = None) -> Model:
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        return BladeModel(design, tolerance)
+        return UnifiedBladeModel(design, tolerance)
