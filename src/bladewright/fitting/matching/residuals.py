@@ -203,8 +203,8 @@ class CloudResiduals:
     overhang: EdgeOverhang
     noise: float
     """of the cloud, in chords: places on walls that scatter more than this count less"""
-    precision: Reals | None = None
-    """(n,) inverse variances of the points, relative to each other; None where they are as the weights"""
+    precision: Reals
+    """(n,) inverse variances of the points, relative to each other"""
 
     def residuals(self, state: PlacedCloud) -> Reals:
         """All residuals (m,); those of the points (n,) along their normals come first."""
