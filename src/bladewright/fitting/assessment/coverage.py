@@ -31,7 +31,8 @@ THICKNESS_SAMPLES = 25
 """places along a section among which it is thickest: half and twice change nothing (design/matching_constants.md)"""
 REACH = 2.0
 """how far from the end of an edge points are compared, in widths of the blade at `INSIDE`: a face and as much of both
-sides, which are straight so far [-]"""
+sides, which are straight so far [-]; half changes nothing of eight made edges, with twice a blunt one is not seen
+(tests/fitting/test_foreign_edges.py)"""
 INSIDE = 0.05
 """distance from an edge, in u, at which the sides show width and direction across it [-]; half and twice change nothing
 measured (design/matching_constants.md)."""
