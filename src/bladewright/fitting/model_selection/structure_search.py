@@ -151,7 +151,7 @@ class StructureSearch:
         """Whether a rich match needs no richer one: where nothing is asked, exact points are met more nearly."""
         if target.open:
             return rich.maximum <= (NEAR if is_exact(rich) else NEAR_EVERYWHERE) * rich.model.chord
-        return target.tolerance is None or self.holds(rich, target.tolerance)
+        return target.tolerance is None or rich.maximum <= target.tolerance
 
     def _without_surplus(self, rich: Match, most: float = np.inf) -> Design:
         """The design of the fewest control points that is predicted to leave hardly more than a rich match.
