@@ -8,10 +8,12 @@ References: Lawson and Hanson 1974, chapter 23 (least distance programming by no
 """
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import solve_triangular
+from scipy.linalg import qr, solve_triangular
+from scipy.linalg.lapack import dormqr
 from scipy.optimize import nnls
 
 from bladewright.numerics.elementary import Reals
@@ -100,7 +102,8 @@ def constrained_minimum(
     linearised = problem.derivatives(z)
     while done < steps and linearised is not None:
         slopes, constraint_slopes = linearised
-        matrix, rhs = _reduced(slopes, -residuals)
+        matrix, reduced = _factored(slopes)
+        rhs = reduced(-residuals)
         scale = float(np.max(np.sum(slopes**2, axis=0), initial=1e-300))
         sizes = np.sqrt(np.sum(slopes**2, axis=0) + damping * scale)
         moved = False
@@ -126,7 +129,7 @@ def constrained_minimum(
                 return ConstrainedMinimum(z=z, converged=True, damping=damping)
             bend = _second_derivative(problem, z, step, residuals, slopes) if accelerated and gain < GOOD_GAIN else None
             if bend is not None:
-                curved, _ = _step(matrix, _reduced(slopes, -residuals - 0.5 * bend)[1], *within)
+                curved, _ = _step(matrix, reduced(-residuals - 0.5 * bend), *within)
                 if np.sum(((curved - step) * sizes) ** 2) <= LARGEST_BEND**2 * np.sum((step * sizes) ** 2):
                     step = curved
             trial = np.clip(z + step, low, high)
@@ -152,11 +155,15 @@ def constrained_minimum(
     return ConstrainedMinimum(z=z, converged=False, damping=damping)
 
 
-def _reduced(slopes: Reals, rhs: Reals) -> tuple[Reals, Reals]:
-    """The triangle (k, k) of slopes (m, k), and the right side (k,) that has the same least-squares problem."""
-    count = slopes.shape[1]
-    found = np.asarray(np.linalg.qr(np.column_stack([slopes, rhs]), mode="r"))  # real: residuals of measured points
-    return found[:count, :count], found[:count, count]
+def _factored(slopes: Reals) -> tuple[Reals, Callable[[Reals], Reals]]:
+    """The triangle (k, k) of slopes (m, k), and the right sides (k,) by those (m,) of the same problem."""
+    (packed, factors), triangle = qr(slopes, mode="raw")  # real: derivatives of measured points' residuals
+
+    def reduced(rhs: Reals) -> Reals:
+        turned, _, _ = dormqr("L", "T", packed, factors, rhs[:, None], lwork=len(rhs))
+        return np.asarray(turned[: len(triangle), 0])
+
+    return triangle, reduced
 
 
 def _second_derivative(

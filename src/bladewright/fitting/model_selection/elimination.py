@@ -107,6 +107,7 @@ class LinearModel:
         taken = np.concatenate(self._columns) if self._columns else np.empty(0, dtype=np.intp)
         self._others = np.setdiff1d(np.arange(len(paths)), taken)
         self._known: dict[tuple[int, Counts], tuple[Reals, Reals, NDArray[np.bool_], Reals]] = {}
+        self._lost: dict[tuple[int, Counts, Counts], tuple[Reals, Reals]] = {}
 
     @property
     def counts(self) -> tuple[Counts, ...]:
@@ -165,19 +166,24 @@ class LinearModel:
             for place, count in enumerate(counts):
                 for fewer in range(max(law.limits()[0][place], count - LARGEST_STEP), count):
                     smaller = (*counts[:place], fewer, *counts[place + 1 :])
-                    embedding = law.embedding(counts, smaller)
-                    lost = np.linalg.qr(embedding, mode="complete")[0][:, embedding.shape[1] :].T
+                    lost, offset = self._lost_directions(i, counts, smaller)
                     if not len(lost):
                         # a row that is left out has no laws along the span to lose control points
                         continue
-                    offset = law.offset(self.design, counts, smaller) / self._size[i]
-                    bent, spread = (
-                        lost @ (values - offset),
-                        lost[:, free] @ prediction.inverse[own, own] @ lost[:, free].T,
-                    )
+                    bent = lost @ (values - offset)
+                    spread = lost[:, free] @ prediction.inverse[own, own] @ lost[:, free].T
                     loss = float(bent @ np.linalg.lstsq(spread, bent, rcond=None)[0])
                     found.append((loss / len(lost), len(lost), i, smaller))
         return sorted(found)
+
+    def _lost_directions(self, law: int, counts: Counts, fewer: Counts) -> tuple[Reals, Reals]:
+        """Directions (m, k) in which a law with some counts is none of those with fewer, and where these begin (k,)."""
+        key = law, counts, fewer
+        if key not in self._lost:
+            embedding = self.laws[law].embedding(counts, fewer)
+            directions = np.linalg.qr(embedding, mode="complete")[0][:, embedding.shape[1] :].T
+            self._lost[key] = directions, self.laws[law].offset(self.design, counts, fewer) / self._size[law]
+        return self._lost[key]
 
     def subspace(self, counts: Sequence[Counts]) -> tuple[Reals, Reals]:
         """The rich structure's parameters (k, j) by those of a narrower one, and their change (k,) to the nearest."""
