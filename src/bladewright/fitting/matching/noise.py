@@ -117,7 +117,7 @@ def outliers_of(
     index, roots = around.index, np.sqrt(weights)
     # a median of k neighbours has about 1 / k of the variance
     spread_out = np.sqrt(1.0 / weights + np.mean(1.0 / weights[index], axis=1) / index.shape[1])
-    deviations = np.abs(heights - np.median(heights[index], axis=1)) / spread_out * np.sqrt(1.0 + 1.0 / index.shape[1])
+    deviations = np.abs(heights - np.median(heights[index], axis=1)) / spread_out
     noise = median_deviation(deviations)
     usual = median_deviation(roots * distances)
     chance = 1.0 + CHANCE_EXCESS / np.sqrt(len(heights))
