@@ -77,7 +77,7 @@ EXPLAINED = 0.25
 """share of the misfit that a linear model of a rich structure leaves at most where its predictions are trusted before
 it is searched: with half, Rotor 67 as an example ended 5.5e-4 of the chord off, not 1.1e-4; where they are always
 trusted, four examples in 23 were missed by 4.9e-4 and more (design/matching.md)"""
-RICHER_GAIN = 0.6
+RICHER_GAIN = 0.5
 """ratio of the misfits of two rich structures above which a richer one is of no use: a third as many control points
 again bring a cubic spline nearer by (3/4)^4, a third, half as many by a fifth (de Boor 1978, chapter 12)."""
 
@@ -195,7 +195,9 @@ class StructureSearch:
         # what the rich match leaves is the noise, where its neighbours share none of it (Morozov 1966)
         noise = max((each.deviation for each in eliminated(model, 0)[:1]), default=0.0)
         noise *= 1.0 + NOISE_QUANTILE / np.sqrt(2.0 * model.points)
-        systematic, exact, least = has_systematic_misfit(rich), is_exact(rich), largest_of(rich, rich)
+        systematic, least, chord = has_systematic_misfit(rich), largest_of(rich, rich), rich.model.chord
+        # exact points of another shape are met no more nearly than others
+        exact = is_exact(rich) and least <= EXACT * chord
 
         def predicted(model: LinearModel) -> list[Prediction]:
             candidates = eliminated(model, 0)
@@ -210,7 +212,6 @@ class StructureSearch:
             nonlocal least
             largest = largest_of(match, rich)
             least = min(least, largest)
-            chord = rich.model.chord
             limit = NEAR if exact or least <= NEAR * chord else NEAR_EVERYWHERE
             return not has_systematic_misfit(match) or largest <= max(limit * chord, NEAR_RICH * least)
 
