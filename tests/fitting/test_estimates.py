@@ -7,6 +7,7 @@ import pytest
 from scipy.stats import t as student
 
 from bladewright.fitting.assessment.estimates import independent_share, parameter_estimates
+from bladewright.fitting.matching.scales import Scales
 
 POINTS, COUNT = 400, 5
 SIZE = np.array([5.0, 0.2, 1.0, 0.01, 3.0])
@@ -19,7 +20,7 @@ def found(slopes, *, alike=1, low=-np.inf, high=np.inf, seed=1, deviation=1e-3):
     """A match whose residuals are noise that so many neighbours share, and whose derivatives are given."""
     rows = deviation * np.repeat(np.random.default_rng(seed).normal(size=len(slopes) // alike), alike)
     problem = SimpleNamespace(
-        scales=SimpleNamespace(size=SIZE, low=np.full(COUNT, low), high=np.full(COUNT, high)),
+        scales=Scales(size=SIZE, low=np.full(COUNT, low), high=np.full(COUNT, high)),
         paths=tuple("abcde"),
         cloud_residuals=SimpleNamespace(
             residuals=lambda _: rows,
@@ -54,6 +55,20 @@ def test_the_covariance_is_that_of_linear_least_squares(seed):
         assert each.identified
     assert statistics.rank == COUNT
     assert statistics.condition == pytest.approx(np.linalg.cond(slopes * SIZE))
+
+
+def test_a_parameter_on_a_bound_is_known_and_the_others_are_as_if_it_were_given():
+    slopes = slopes_of(0)
+    statistics = parameter_estimates(found(slopes, low=1.0)[0])
+    others = slopes[:, 1:]
+    rows = found(slopes)[1]
+    variance = np.sum(rows**2) / (POINTS - COUNT)
+    np.testing.assert_allclose(statistics.covariance[1:, 1:], variance * np.linalg.inv(others.T @ others), rtol=1e-9)
+    assert not statistics.covariance[0].any()
+    first, *_ = statistics.estimates
+    assert first.at_bound
+    assert first.low == first.value == first.high
+    assert statistics.rank == COUNT
 
 
 def test_intervals_hold_the_truth_as_often_as_they_say():

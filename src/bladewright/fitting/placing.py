@@ -45,9 +45,9 @@ GAIN = 0.9
 LONGEST_STEP = 0.2
 """longest step of the motion, of the cloud's extent, within which residuals and shape are nearly linear: some 10 deg.
 Half and twice change nothing measured (design/matching_constants.md)."""
-ON_BOUND, WEAKEST_SLOPE = 1e-9, 1e-10
-"""distance from a bound, of a parameter's scale, within which it is held, and singular value of the slopes, of the
-largest, below which it is rounding: half and twice change nothing measured (design/matching_constants.md)"""
+WEAKEST_SLOPE = 1e-10
+"""singular value of the slopes, of the largest, below which it is rounding: half and twice change nothing measured
+(design/matching_constants.md)"""
 ON_CUT = 1e-3
 """distance from a cut, of the cloud's extent, within which points may lie on its face: 0.1 mm of 100 mm, some standard
 deviations of a scan's noise. Points of the sides there are not weighed, but measured."""
@@ -218,11 +218,11 @@ def _step_beside(found: Match) -> tuple[Motion | None, float]:
     Parameters on a bound are held.
     """
     problem, cloud = found.problem, found.problem.cloud_residuals
-    z, (low, high) = problem.vector(found.design), problem.bounds
+    z = problem.vector(found.design)
     values, derivatives = problem.values(z), problem.derivatives(z)
     if values is None or derivatives is None:
         return None, 1.0
-    slopes = derivatives[0][:, (z - low > ON_BOUND) & (high - z > ON_BOUND)]
+    slopes = derivatives[0][:, problem.scales.inside(problem.values_of(found.design))]
     pivot, size = np.mean(cloud.points, axis=0), float(np.max(np.ptp(cloud.points, axis=0)))
     scale = motion_scale(cloud.points.shape[1], size)
     moving = np.zeros((len(values[0]), len(scale)))

@@ -61,20 +61,26 @@ def parameter_estimates(match: Match) -> ParameterEstimates:
 
     The points' distances are taken as normal errors with variances inverse to the given weights, of which as many are
     independent as their autocorrelation says. A search may weigh points further by their distances; that takes no error
-    away. References: Bates and Watts 1988, section 2.3 (linear approximation); Seber and Wild 1989, section 2.1.4
+    away. A parameter on a bound is held there, as an active constraint holds it (Nocedal and Wright 2006, section
+    12.3). References: Bates and Watts 1988, section 2.3 (linear approximation); Seber and Wild 1989, section 2.1.4
     (weights that are not the inverse variances).
     """
     problem, scales = match.problem, match.problem.scales
     slopes, excess, variance, left = _linearised(match)
-    across, singular, turns = np.linalg.svd(slopes, full_matrices=False)
-    known = singular > 1e-13 * singular[0]
+    values = problem.values_of(match.design)
+    # what a bound holds is known
+    inside = scales.inside(values)
+    across, singular, turns = np.linalg.svd(slopes[:, inside], full_matrices=False)
+    largest, least = (singular[0], singular[-1]) if len(singular) else (1.0, 1.0)
+    known = singular > 1e-13 * largest
     # covariance of the rotated parameters at variance one: the identity where no point is weighed further
     middle = across[:, known].T @ (excess[:, None] * across[:, known]) / np.outer(singular[known], singular[known])
-    covariance = variance * turns[known].T @ middle @ turns[known]
+    covariance = np.zeros((len(inside), len(inside)))
+    covariance[np.ix_(inside, inside)] = variance * turns[known].T @ middle @ turns[known]
     spread = np.sqrt(np.diag(covariance))
-    spread[np.any(np.abs(turns[~known]) > np.sqrt(np.finfo(float).eps), axis=0)] = np.inf
-    values, deviations = problem.values_of(match.design), spread * scales.size
-    reach, near = float(stdtrit(left, 0.975)) * deviations, AT_BOUND * scales.size
+    spread[np.flatnonzero(inside)[np.any(np.abs(turns[~known]) > np.sqrt(np.finfo(float).eps), axis=0)]] = np.inf
+    deviations, near = spread * scales.size, AT_BOUND * scales.size
+    reach = float(stdtrit(left, 0.975)) * deviations
     at_bound = (values - scales.low < np.minimum(near, 0.1 * np.abs(values))) | (scales.high - values < near)
     estimates = tuple(
         Estimate(
@@ -91,8 +97,8 @@ def parameter_estimates(match: Match) -> ParameterEstimates:
     return ParameterEstimates(
         estimates=estimates,
         covariance=covariance * np.outer(scales.size, scales.size),
-        rank=int(np.count_nonzero(np.sqrt(variance * np.diag(middle)) < 1.0)),
-        condition=float(singular[0] / singular[-1]) if singular[-1] > 0.0 else np.inf,
+        rank=int(np.count_nonzero(~inside) + np.count_nonzero(np.sqrt(variance * np.diag(middle)) < 1.0)),
+        condition=float(largest / least) if least > 0.0 else np.inf,
     )
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bladewright.derivatives.patterns import matching
 from bladewright.designs import Design, Part, limits_at, unit_at
@@ -56,6 +57,9 @@ SIZE_BY_NAME = {
     "pressure_places": 0.05,
 }
 """of fields whose size the values do not tell, a change that matters"""
+ON_BOUND = 1e-9
+"""distance from a bound, of a parameter's scale, within which it lies on the bound: half and twice change nothing
+measured (design/matching_constants.md)"""
 INSIDE = 1e-3
 """how far inside its field's limits a parameter stays, of its size: a search may differentiate at its bounds"""
 
@@ -106,6 +110,10 @@ class Scales:
     """(k,) lowest values"""
     high: Reals
     """(k,) highest values"""
+
+    def inside(self, values: Reals) -> NDArray[np.bool_]:
+        """Which of the parameters (k,) lie on none of their bounds, apart from rounding."""
+        return np.minimum(values - self.low, self.high - values) > ON_BOUND * self.size
 
 
 def scales_of(
