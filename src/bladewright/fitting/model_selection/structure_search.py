@@ -35,7 +35,6 @@ from bladewright.fitting.model_selection.elimination import (
     best_of_size,
     eliminated,
     reweighted,
-    reweighted_prediction,
 )
 from bladewright.fitting.model_selection.reshaping import (
     rich_structure,
@@ -105,14 +104,6 @@ class StructureSearch:
     """what searches begin from where predictions have no shape"""
     predictions: int = MOST_PREDICTIONS
     """matches about which structures are predicted at most"""
-
-    def holds(self, match: Match, tolerance: float) -> bool:
-        """Whether a match of the same structure is predicted to keep a tolerance [m] where points are weighed so."""
-        if match.maximum <= tolerance:
-            return True
-        model, relative = self._model(match), tolerance / match.model.chord
-        found = model.prediction(model.counts)
-        return found is not None and reweighted_prediction(model, found, relative).largest <= PREDICTED * relative
 
     def rich(self, match: Match, target: MatchTarget, *, sampled: bool = False) -> Match:
         """The match of a rich structure, and of ever richer ones until one is near enough or comes hardly nearer.
@@ -221,7 +212,7 @@ class StructureSearch:
     def near_everywhere(self, rich: Match) -> Match:
         """The match that predicts well, or one that is nearer where that is far from some points."""
         found, limit = self.well_predicted(rich), trusted_distance(rich)
-        if not has_systematic_misfit(found) or largest_of(found, rich) <= limit or not self.holds(rich, limit):
+        if not has_systematic_misfit(found) or largest_of(found, rich) <= limit or rich.maximum > limit:
             return found
         nearer, _ = self.within(rich, limit)
         return nearer if largest_of(nearer, rich) < largest_of(found, rich) and not is_refused(nearer) else found
