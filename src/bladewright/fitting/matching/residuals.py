@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Design, Part
 from bladewright.errors import DesignError
 from bladewright.fitting.free_parameters import EDGES
@@ -25,7 +24,7 @@ from bladewright.fitting.models.model import Model, ModelShape
 from bladewright.numerics.least_squares import ConstrainedProblem
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import number_paths
-from bladewright.section.unified_limits import TANGENTS, THICKNESSES
+from bladewright.section.unified_limits import THICKNESSES
 
 SPREAD_ABOUT_START = 3.0
 """spread of a parameter about its start, in its own scale. It only holds what nothing else does
@@ -47,11 +46,6 @@ cloud bends (design/matching_constants.md)."""
 CAMBER_SPREAD = 0.3
 """spread of the difference of upper and lower thickness, in their scale: a camber line in the middle is preferred
 (design/matching_constants.md)."""
-
-USUAL_TANGENT, TANGENT_SPREAD = 0.4, 1.5
-"""usual tangent proportion of the camber lines of a unified blade, and the spread about it, in the scale of tangents.
-Nearly straight cambers hardly show them, and they went to their bounds, where metal angles cease to matter
-(design/matching.md)."""
 
 Row = tuple[list[tuple[str, float]], float, float]
 """paths of parameters and their factors, the usual value of their sum, and its spread in the scale of the parameters"""
@@ -75,13 +69,10 @@ class Regularisation:
         return self.matrix @ z - self.rhs
 
 
-def regularisation_of(
-    start: Design, paths: Sequence[str], size: Reals, *, ends_shown: bool = True, independent_share: float = 1.0
-) -> Regularisation:
+def regularisation_of(start: Design, paths: Sequence[str], size: Reals, *, ends_shown: bool = True) -> Regularisation:
     """The regularisation about a start, for parameters (k,) of scale `size`.
 
-    `ends_shown` tells whether rows of points show both ends of the blade. Tangents are weighed by the share of the
-    points that count as independent, as edge heights are.
+    `ends_shown` tells whether rows of points show both ends of the blade.
     """
     spread = np.where([path.startswith(MERIDIANS) for path in paths], CHANNEL_SPREAD, SPREAD_ABOUT_START)
     corners = set[str]() if ends_shown else _corners(start)
@@ -89,10 +80,8 @@ def regularisation_of(
     rows, rhs_rows = [np.diag(1.0 / spread)], [np.zeros(len(paths))]
     values = start.parameters()
     index = {path: i for i, path in enumerate(paths)}
-    shared = float(np.sqrt(independent_share))
-    tangents = _tangents(start, TANGENT_SPREAD * shared)
     bends = chain(_second_differences(start), _meridional_bends(start))
-    for terms, usual, width in chain(bends, _thickness_differences(start), tangents):
+    for terms, usual, width in chain(bends, _thickness_differences(start)):
         free = [index[path] for path, _ in terms if path in index]
         if not free:
             continue
@@ -155,13 +144,6 @@ def _thickness_differences(start: Design) -> Iterator[Row]:
             yield list(zip(pair, (1.0, -1.0), strict=True)), 0.0, CAMBER_SPREAD
 
 
-def _tangents(start: Design, spread: float) -> Iterator[Row]:
-    if isinstance(start, UnifiedBlade):
-        for path in start.parameters():
-            if path.startswith(TANGENTS):
-                yield [(path, 1.0)], USUAL_TANGENT, spread
-
-
 def paths_of(name: str, law: Any) -> list[list[str]]:
     """Paths of a law's control points along the span, a list for each control point along the chord."""
     if law is None:
@@ -177,9 +159,6 @@ def paths_of(name: str, law: Any) -> list[list[str]]:
 EDGE_SHARE = 0.05
 """share of a cloud's points that show its edges: the rows that hold overhanging edges count as much as so many
 points (design/matching_constants.md)."""
-USUAL_EDGE_HEIGHT = (0.8, 0.2)
-"""usual height of the control point that sets an edge's radius, of the thickness beside it, and its spread. It is weak,
-and holds edge radii that no point shows (design/matching_constants.md)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -265,7 +244,7 @@ class CloudResiduals:
 
 
 class MatchProblem(ConstrainedProblem):
-    """Residuals of a cloud, of unusual edge heights and of the regularisation, under the shape's constraints."""
+    """Residuals of a cloud and of the regularisation, under the shape's constraints."""
 
     def __init__(
         self,
@@ -275,15 +254,12 @@ class MatchProblem(ConstrainedProblem):
         paths: Sequence[str],
         scales: Scales,
         regularisation: Regularisation,
-        independent_share: float,
         hint: Footpoints,
         margin: float = 0.0,
     ) -> None:
         self.cloud_residuals, self.model = cloud_residuals, cloud_residuals.model
         self.start, self.paths, self.scales, self.margin = start, tuple(paths), scales, margin
         self.noise = cloud_residuals.noise
-        self.edge_height_noise = self.noise / float(np.sqrt(independent_share))
-        """noise by which edge heights are weighed: larger where points repeat each other"""
         self.regularisation = regularisation.scaled(self.noise)
         self.first = self.values_of(start)
         self.evaluations, self._least = 0, np.inf
@@ -334,11 +310,8 @@ class MatchProblem(ConstrainedProblem):
         state = self.state(z)
         if state is None:
             return None
-        full = self._edge_height_weight(state.shape) * (
-            np.ravel(state.shape.edge_radius_margins[1]) - USUAL_EDGE_HEIGHT[0]
-        )
-        rows = np.concatenate([self.cloud_residuals.residuals(state), full, self.regularisation.residuals(z)])
-        margins = np.concatenate([np.ravel(state.shape.edge_radius_margins[0]) + self.margin, state.shape.constraints])
+        rows = np.concatenate([self.cloud_residuals.residuals(state), self.regularisation.residuals(z)])
+        margins = np.concatenate([state.shape.edge_radius_margins + self.margin, state.shape.constraints])
         cost = float(rows @ rows) * (1.0 + 1e3 * float(np.max(margins, initial=0.0)))
         if cost < self._least:
             self._least, self.best = cost, np.array(z)
@@ -353,15 +326,9 @@ class MatchProblem(ConstrainedProblem):
         if state is None:
             return None
         try:
-            edge_radius_margins = self.model.edge_radius_margin_rates(state.shape, self.paths)
-            margins, full = (edge_radius_margins[:, i].reshape(len(self.paths), -1).T for i in (0, 1))
-            margins = np.concatenate([margins, self.model.constraint_rates(state.shape, self.paths).T])
+            rates = self.model.edge_radius_margin_rates, self.model.constraint_rates
+            margins = np.concatenate([of(state.shape, self.paths).T for of in rates])
             slopes = self.cloud_residuals.slopes(state, self.paths)
         except DesignError:
             return None
-        rows = np.concatenate([slopes, self._edge_height_weight(state.shape) * full])
-        return np.concatenate([rows * self.scales.size, self.regularisation.matrix]), margins * self.scales.size
-
-    def _edge_height_weight(self, shape: ModelShape) -> float:
-        stations = max(shape.edge_radius_margins[0].size / 4.0, 1.0)
-        return self.edge_height_noise / (USUAL_EDGE_HEIGHT[1] * float(np.sqrt(stations)))
+        return np.concatenate([slopes * self.scales.size, self.regularisation.matrix]), margins * self.scales.size

@@ -355,11 +355,12 @@ def nearest_to_tolerance(task: Task, start: Match, weights: Reals, rich: Match, 
 
 
 def largest_of(match: Match, rich: Match) -> float:
-    """The largest distance [m] of the points that took part in a rich match: ends that drew back leave none out.
+    """The largest distance [m] of the points that take part in a match or in a rich one: none that either leaves out.
 
     But for those that lie on an end face, inside the blade.
     """
-    return float(np.max(match.state.footpoints.distances[rich.rows & ~match.ends.on_end_face]))
+    rows = (rich.rows | match.rows) & ~match.ends.on_end_face
+    return float(np.max(match.state.footpoints.distances[rows]))
 
 
 def confirmed_match(task: Task, match: Match, tolerance: float) -> Match:
