@@ -95,7 +95,7 @@ def measured(
     noise_estimate = noise_of(points[rows], footpoints.part(rows), None if precision is None else precision[rows])
     inliers = np.zeros(len(points), dtype=bool)
     inliers[rows] = noise_estimate.inliers
-    shape = ModelShape(design=None, sides=sides, exact=exact)
+    shape = ModelShape(design=None, sides=sides, edge_radius_margins=np.zeros(0), exact=exact)
     on_end_face = blade_ends_of(points, footpoints, shape, set_aside == "").on_end_face
     deviations = np.where(footpoints.heights < 0.0, -1.0, 1.0) * off
     places = np.array(["upper", "lower"], dtype="<U20")[footpoints.side]

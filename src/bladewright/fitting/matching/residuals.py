@@ -159,6 +159,9 @@ def paths_of(name: str, law: Any) -> list[list[str]]:
 EDGE_SHARE = 0.05
 """share of a cloud's points that show its edges: the rows that hold overhanging edges count as much as so many
 points (design/matching_constants.md)."""
+USUAL_EDGE_HEIGHT = (0.8, 0.2)
+"""usual height of the control point that sets an edge's radius, of the thickness beside it, and its spread. It is weak,
+and holds edge radii that no point shows (design/matching_constants.md)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -244,7 +247,7 @@ class CloudResiduals:
 
 
 class MatchProblem(ConstrainedProblem):
-    """Residuals of a cloud and of the regularisation, under the shape's constraints."""
+    """Residuals of a cloud, of unusual edge heights and of the regularisation, under the shape's constraints."""
 
     def __init__(
         self,
@@ -254,12 +257,15 @@ class MatchProblem(ConstrainedProblem):
         paths: Sequence[str],
         scales: Scales,
         regularisation: Regularisation,
+        independent_share: float,
         hint: Footpoints,
         margin: float = 0.0,
     ) -> None:
         self.cloud_residuals, self.model = cloud_residuals, cloud_residuals.model
         self.start, self.paths, self.scales, self.margin = start, tuple(paths), scales, margin
         self.noise = cloud_residuals.noise
+        self.edge_height_noise = self.noise / float(np.sqrt(independent_share))
+        """noise by which edge heights are weighed: larger where points repeat each other"""
         self.regularisation = regularisation.scaled(self.noise)
         self.first = self.values_of(start)
         self.evaluations, self._least = 0, np.inf
@@ -310,8 +316,11 @@ class MatchProblem(ConstrainedProblem):
         state = self.state(z)
         if state is None:
             return None
-        rows = np.concatenate([self.cloud_residuals.residuals(state), self.regularisation.residuals(z)])
-        margins = np.concatenate([state.shape.edge_radius_margins + self.margin, state.shape.constraints])
+        full = self._edge_height_weight(state.shape) * (
+            np.ravel(state.shape.edge_radius_margins[1]) - USUAL_EDGE_HEIGHT[0]
+        )
+        rows = np.concatenate([self.cloud_residuals.residuals(state), full, self.regularisation.residuals(z)])
+        margins = np.concatenate([np.ravel(state.shape.edge_radius_margins[0]) + self.margin, state.shape.constraints])
         cost = float(rows @ rows) * (1.0 + 1e3 * float(np.max(margins, initial=0.0)))
         if cost < self._least:
             self._least, self.best = cost, np.array(z)
@@ -326,9 +335,15 @@ class MatchProblem(ConstrainedProblem):
         if state is None:
             return None
         try:
-            rates = self.model.edge_radius_margin_rates, self.model.constraint_rates
-            margins = np.concatenate([of(state.shape, self.paths).T for of in rates])
+            edge_radius_margins = self.model.edge_radius_margin_rates(state.shape, self.paths)
+            margins, full = (edge_radius_margins[:, i].reshape(len(self.paths), -1).T for i in (0, 1))
+            margins = np.concatenate([margins, self.model.constraint_rates(state.shape, self.paths).T])
             slopes = self.cloud_residuals.slopes(state, self.paths)
         except DesignError:
             return None
-        return np.concatenate([slopes * self.scales.size, self.regularisation.matrix]), margins * self.scales.size
+        rows = np.concatenate([slopes, self._edge_height_weight(state.shape) * full])
+        return np.concatenate([rows * self.scales.size, self.regularisation.matrix]), margins * self.scales.size
+
+    def _edge_height_weight(self, shape: ModelShape) -> float:
+        stations = max(shape.edge_radius_margins[0].size / 4.0, 1.0)
+        return self.edge_height_noise / (USUAL_EDGE_HEIGHT[1] * float(np.sqrt(stations)))

@@ -313,7 +313,7 @@ def _prepared_round(
     # of a cloud without noise the true edge is to cost nothing, but where points are doubted
     exact = task.allow_outliers and noise_estimate.noise < EXACT * float(np.max(np.ptp(points, axis=0)))
     scales = scales_of(start, paths, model.chord, task.bounds)
-    share = noise_estimate.independent_share(len(paths)) if task.preliminary else 1.0
+    share = noise_estimate.independent_share(len(paths))
     regularisation = regularisation_of(start, paths, scales.size, ends_shown=ends.in_rows(model.chord))
     cloud_residuals = CloudResiduals(
         points=points,
@@ -329,7 +329,10 @@ def _prepared_round(
         start=start,
         paths=paths,
         scales=scales,
-        regularisation=regularisation.scaled(task.regularisation_factor / float(np.sqrt(share))),
+        regularisation=regularisation.scaled(
+            task.regularisation_factor / float(np.sqrt(share if task.preliminary else 1.0))
+        ),
+        independent_share=share / task.regularisation_factor**2,
         hint=footpoints,
         margin=EDGE_RADIUS_MARGIN[points.shape[1]] * task.margin_factor,
     )

@@ -76,7 +76,7 @@ EXPLAINED = 0.25
 """share of the misfit that a linear model of a rich structure leaves at most where its predictions are trusted before
 it is searched: with half, Rotor 67 as an example ended 5.5e-4 of the chord off, not 1.1e-4; where they are always
 trusted, four examples in 23 were missed by 4.9e-4 and more (design/matching.md)"""
-RICHER_GAIN = 0.5
+RICHER_GAIN = 0.6
 """ratio of the misfits of two rich structures above which a richer one is of no use: a third as many control points
 again bring a cubic spline nearer by (3/4)^4, a third, half as many by a fifth (de Boor 1978, chapter 12)."""
 
@@ -188,14 +188,15 @@ class StructureSearch:
         noise *= 1.0 + NOISE_QUANTILE / np.sqrt(2.0 * model.points)
         systematic, least, chord = has_systematic_misfit(rich), largest_of(rich, rich), rich.model.chord
         # exact points of another shape are met no more nearly than others
-        exact = is_exact(rich) and least <= EXACT * chord
+        least_of_exact = EXACT if is_exact(rich) else NEAR
 
         def predicted(model: LinearModel) -> list[Prediction]:
             candidates = eliminated(model, 0)
             if not systematic:
                 return [each for each in candidates if each.deviation <= noise]
             nearest = NEAR_RICH * min((each.largest for each in candidates), default=0.0)
-            aim = max(NEAR if exact or nearest <= EXACT else ENOUGH, nearest)
+            exact = least <= least_of_exact * chord or nearest <= EXACT
+            aim = max(NEAR if exact else ENOUGH, nearest)
             return [each for each in candidates if each.largest <= aim]
 
         def kept(match: Match) -> bool:
@@ -203,7 +204,7 @@ class StructureSearch:
             nonlocal least
             largest = largest_of(match, rich)
             least = min(least, largest)
-            limit = NEAR if exact or least <= NEAR * chord else NEAR_EVERYWHERE
+            limit = NEAR if least <= least_of_exact * chord else NEAR_EVERYWHERE
             return not has_systematic_misfit(match) or largest <= max(limit * chord, NEAR_RICH * least)
 
         found, nearby = self._fewest(rich, None, _Aim(predicted=predicted, searched=self._searched, kept=kept))

@@ -38,9 +38,9 @@ class ModelShape:
 
     design: Any
     sides: tuple[Side, Side]
-    edge_radius_margins: Reals = field(default_factory=lambda: np.empty(0))
-    """(m,) for each edge of each side whose radius a control point sets: by how much that point stands higher than the
-    thickness beside it, of the section's extent"""
+    edge_radius_margins: Reals = field(default_factory=lambda: np.zeros((2, 0)))
+    """(2, ...) for each edge of each side whose radius a control point sets: by how much that point stands higher than
+    the thickness beside it, of the section's extent, and its height, of that thickness"""
     constraints: Reals = field(default_factory=lambda: np.empty(0))
     """(c,) values that may not be positive: how near a channel is to folding over, or sections are to a refusal"""
     exact: Any = None
@@ -75,8 +75,8 @@ class Model(ABC):
         """Derivatives (n, k) of the footpoints along directions (n, d) by parameters, at held surface parameters."""
 
     def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
-        """Derivatives (k, m) of `shape.edge_radius_margins`."""
-        return np.zeros((len(paths), len(shape.edge_radius_margins)))
+        """Derivatives (k, ...) of `shape.edge_radius_margins`."""
+        return np.zeros((len(paths), *shape.edge_radius_margins.shape))
 
     @abstractmethod
     def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
@@ -135,7 +135,7 @@ class SectionModel(Model):
 
     @abstractmethod
     def _parts(self, design: Any) -> tuple[Array, Array, Array, Array]:
-        """Homogeneous control points (..., n, d) of both sides, edge radius margins (..., m) and constraints."""
+        """Homogeneous control points (..., n, d) of both sides, edge radius margins (..., 2, c) and constraints."""
 
     @abstractmethod
     def _side(self, net: Reals) -> Curve:
@@ -169,7 +169,7 @@ class SectionModel(Model):
         known, asked, rates = self._last
         if known is not shape or asked != tuple(paths):
             parts = self._parts(shape.design.changed(complex_steps(shape.design, paths)))
-            own = [part.shape[-axes:] for part, axes in zip(parts, (2, 2, 1, 1), strict=True)]
+            own = [part.shape[-axes:] for part, axes in zip(parts, (2, 2, 2, 1), strict=True)]
             rates = [np.imag(np.broadcast_to(p, (len(paths), *one))) / STEP for p, one in zip(parts, own, strict=True)]
             self._last = shape, tuple(paths), rates
         return rates

@@ -78,7 +78,7 @@ class PlanarModel(SectionModel):
         return Curve(control_points=net, knots=self.closed, degree=DEGREE)
 
     def _parts(self, design: Any) -> tuple[Array, Array, Array, Array]:
-        return *self._nets(design), np.empty(0), infeasibility(design.section, SINGLE_SECTION)
+        return *self._nets(design), np.zeros((2, 0)), infeasibility(design.section, SINGLE_SECTION)
 
     def _nets(self, design: Any) -> tuple[Array, Array]:
         """Control points (..., n, 2) of both sides where the section stands [m]."""

@@ -53,7 +53,7 @@ class UnifiedSectionModel(SectionModel):
 
     def _parts(self, design: Any) -> tuple[Array, Array, Array, Array]:
         line, upper, lower = _outline(design)
-        margins = _edge_radius_margins(design, line, upper, lower)[..., 0]
+        margins = np.moveaxis(_edge_radius_margins(design, line, upper, lower)[..., 0], 0, -2)
         return upper[..., 0, :, :], lower[..., 0, :, :], margins, np.zeros(0)
 
     def _side(self, net: Reals) -> Curve:
@@ -82,7 +82,7 @@ class UnifiedBladeModel(SpatialModel):
         return ModelShape(
             design=design,
             sides=(side_surface(upper, self.knots, DEGREE), side_surface(lower, self.knots, DEGREE)),
-            edge_radius_margins=np.ravel(np.real(_edge_radius_margins(design, plane.camber, plane.upper, plane.lower))),
+            edge_radius_margins=np.real(_edge_radius_margins(design, plane.camber, plane.upper, plane.lower)),
             constraints=np.real(_fold_margins(exact, exact.channel)),
             exact=exact,
         )
@@ -92,15 +92,15 @@ class UnifiedBladeModel(SpatialModel):
 
     def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """By the laws only: by the channel they vanish but for the walls' slopes, which are left out."""
-        found = np.zeros((len(paths), 4, len(self.stations)))
+        found = np.zeros((len(paths), *shape.edge_radius_margins.shape))
         design, own = shape.design, [place for place, path in enumerate(paths) if not path.startswith("channel.")]
         steps, sources = steps_of(design, [paths[place] for place in own])
         plane = shape.exact.moved_to(stepped_design(design, steps)).sections(self.stations).plane
         rates = np.imag(_edge_radius_margins(design, plane.camber, plane.upper, plane.lower)) / STEP
         weights = [step.weights(self.stations) for step in steps]
         for place, (step, number) in zip(own, sources, strict=True):
-            found[place] = rates[step] * weights[step][:, number]
-        return found.reshape(len(paths), -1)
+            found[place] = rates[:, step] * weights[step][:, number]
+        return found
 
     def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """From one channel with a complex step on each of its parameters in a batch."""
@@ -118,7 +118,7 @@ def _narrowest_places(design: UnifiedBlade, exact: ExactUnifiedBlade) -> Reals:
     (Hettich and Kortanek 1993, section 7), an exchange a round.
     """
     plane = exact.sections(PLACES_ALONG_SPAN).plane
-    excess = np.real(_edge_radius_margins(design, plane.camber, plane.upper, plane.lower))
+    excess = np.real(_edge_radius_margins(design, plane.camber, plane.upper, plane.lower))[0]
     higher = np.pad(excess, ((0, 0), (1, 1)), constant_values=-np.inf)
     return PLACES_ALONG_SPAN[np.any((excess >= higher[:, :-2]) & (excess >= higher[:, 2:]), axis=0)]
 
@@ -144,7 +144,7 @@ def _outline(design: UnifiedSection) -> tuple[Array, Array, Array]:
 
 
 def _edge_radius_margins(design: Any, line: Array, upper: Array, lower: Array) -> Array:
-    """The edge radius margins (..., 4, m) of m sections, as `ModelShape` defines them."""
+    """The edge radius margins (2, ..., 4, m) of sections, as `ModelShape` defines them."""
     extent = line[..., 3, 0] - line[..., 0, 0]
     places = sample_places(design.samples, design.clustering)[[2, -3]]
     camber = camber_points(line, places)
@@ -154,7 +154,7 @@ def _edge_radius_margins(design: Any, line: Array, upper: Array, lower: Array) -
         for end, (first, second, third) in enumerate(((0, 1, 2), (-1, -2, -3))):
             height = length(plain[..., second, :] - plain[..., first, :])
             next_thickness = length(plain[..., third, :] - camber[..., end, :])
-            rows.append(((height - next_thickness) / extent)[..., None, :])
+            rows.append(np.stack([(height - next_thickness) / extent, height / next_thickness])[..., None, :])
     return concatenated(rows, axis=-2)
 
 
