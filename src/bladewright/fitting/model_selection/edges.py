@@ -1,15 +1,20 @@
-"""The edges of a section that the points tell from no sharp one.
+"""The edges of a section that the points tell from no sharp one, and further starts with other edges.
 
 A round edge of unknown radius and an end of the blade further in make up for each other, so that least squares alone
-leave the tip of a wedge short by several radii.
+leave the tip of a wedge short by several radii. A nose slid along the outline is a minimum of its own.
 """
+
+from collections.abc import Iterator
 
 import numpy as np
 from scipy.special import chdtri
 
 from bladewright.errors import DesignError, FitError
+from bladewright.fitting.assessment.acceptance import GROSS_DEVIATION
 from bladewright.fitting.matching.footpoints import Side
 from bladewright.fitting.matching.search import QUICK_ROUNDS, ROUGH_REDUCTION, Match, Task, searched
+from bladewright.fitting.model_selection.reshaping import with_feasible_edges
+from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS
 
 SHARP_RADIUS = 5e-6
 """radius of such an edge, of the axial chord: a wedge of 15 deg ends 3.3e-5 before its tip, by r / sin(7.5 deg) - r, a
@@ -62,3 +67,33 @@ def _pointed(side: Side, ends: slice) -> bool:
     across = (second - edge) / np.sqrt(np.sum((second - edge) ** 2))
     rise = float((third - edge) @ across)
     return 2.0 * rise**2 < float(np.sum((third - edge) ** 2))
+
+
+USUAL_TANGENT, USUAL_RADIUS = 0.3, 0.01
+"""tangent proportions and edge radii of further starts: two of three sections drawn at random that had ended in other
+minima are met from one of these (design/matching.md)."""
+
+
+def from_other_edges(task: Task, match: Match, noise: float) -> Iterator[Match]:
+    """Matches from sections whose edges lie elsewhere on the outline: a nose slid along it is a minimum of its own.
+
+    `noise` is the first round's, of the chord.
+    """
+    known = match.design.parameters()
+    usual = {**dict.fromkeys(TANGENTS, USUAL_TANGENT), **dict.fromkeys(RADII, USUAL_RADIUS)}
+    straight = usual | {name: known.get("stagger", 0.0) for name in ANGLES}
+    for values in (usual, straight):
+        changes = {path: value for path, value in values.items() if path in match.problem.paths}
+        if not changes:
+            continue
+        try:
+            yield searched(task, with_feasible_edges(match.design.changed(changes)), noise=noise)
+        except (DesignError, FitError):
+            continue
+
+
+def trusted_or_from_other_edges(task: Task, match: Match, noise: float) -> Match:
+    """The match of a section, or where it is coarser than is trusted the nearest of it and those from other edges."""
+    if np.max(match.state.footpoints.distances) <= GROSS_DEVIATION[1] * match.model.chord:
+        return match
+    return min((match, *from_other_edges(task, match, noise)), key=lambda each: each.mean_distance)
