@@ -292,6 +292,43 @@ def reweighted_prediction(model: LinearModel, prediction: Prediction, tolerance:
     return prediction
 
 
+EXCHANGES_TRIED = 4
+"""wider structures from which an exchange is sought, and narrower ones of each (design/matching_constants.md)."""
+
+
 def best_of_size(model: LinearModel, most: int) -> list[Prediction]:
-    """Structures of at most so many parameters that are predicted to leave least, best first."""
-    return sorted((each for each in eliminated(model, most) if each.parameters <= most), key=lambda each: each.cost)
+    """Structures of at most so many parameters that are predicted to leave least, best first.
+
+    Those of the elimination, and those that the best of them leads to by an exchange between two laws: a forward step
+    before a backward one (Draper and Smith 1998, section 15.4).
+    """
+    pool = {each.counts: each for each in eliminated(model, most) if each.parameters <= most}
+    if pool:
+        best = min(pool.values(), key=lambda each: each.cost)
+        gains = [((best.cost - each.cost) / (each.parameters - best.parameters), each) for each in _wider(model, best)]
+        for _, more in sorted(gains, key=lambda pair: -pair[0])[:EXCHANGES_TRIED]:
+            pool |= {each.counts: each for each in _reduced(model, more, most)}
+    return sorted(pool.values(), key=lambda each: each.cost)
+
+
+def _wider(model: LinearModel, of: Prediction) -> list[Prediction]:
+    """The structures with one law wider in one direction, within the rich one."""
+    found = []
+    for i, (counts, most) in enumerate(zip(of.counts, model.counts, strict=True)):
+        for place, count in enumerate(counts):
+            for more in range(count + 1, min(count + LARGEST_STEP, most[place]) + 1):
+                changed = (*counts[:place], more, *counts[place + 1 :])
+                found.append(model.prediction([*of.counts[:i], changed, *of.counts[i + 1 :]]))
+    return [each for each in found if each is not None]
+
+
+def _reduced(model: LinearModel, prediction: Prediction, most: int) -> list[Prediction]:
+    """The structure, or the best with one law narrower that have at most so many parameters."""
+    if prediction.parameters <= most:
+        return [prediction]
+    enough = [each for each in model.losses(prediction) if prediction.parameters - each[1] <= most]
+    counts = [(law, smaller) for _, _, law, smaller in enough[:EXCHANGES_TRIED]]
+    found = [
+        model.prediction([*prediction.counts[:law], smaller, *prediction.counts[law + 1 :]]) for law, smaller in counts
+    ]
+    return [each for each in found if each is not None]
