@@ -186,25 +186,22 @@ class StructureSearch:
         # what the rich match leaves is the noise, where its neighbours share none of it (Morozov 1966)
         noise = max((each.deviation for each in eliminated(model, 0)[:1]), default=0.0)
         noise *= 1.0 + NOISE_QUANTILE / np.sqrt(2.0 * model.points)
-        systematic, least, chord = has_systematic_misfit(rich), largest_of(rich, rich), rich.model.chord
-        # exact points of another shape are met no more nearly than others
-        least_of_exact = EXACT if is_exact(rich) else NEAR
+        systematic, exact, least = has_systematic_misfit(rich), is_exact(rich), largest_of(rich, rich)
 
         def predicted(model: LinearModel) -> list[Prediction]:
             candidates = eliminated(model, 0)
             if not systematic:
                 return [each for each in candidates if each.deviation <= noise]
             nearest = NEAR_RICH * min((each.largest for each in candidates), default=0.0)
-            exact = least <= least_of_exact * chord or nearest <= EXACT
-            aim = max(NEAR if exact else ENOUGH, nearest)
+            aim = max(NEAR if exact or nearest <= EXACT else ENOUGH, nearest)
             return [each for each in candidates if each.largest <= aim]
 
         def kept(match: Match) -> bool:
             # one that is nearer than the rich match shows that others can be
             nonlocal least
-            largest = largest_of(match, rich)
+            largest, chord = largest_of(match, rich), rich.model.chord
             least = min(least, largest)
-            limit = NEAR if least <= least_of_exact * chord else NEAR_EVERYWHERE
+            limit = NEAR if exact or least <= NEAR * chord else NEAR_EVERYWHERE
             return not has_systematic_misfit(match) or largest <= max(limit * chord, NEAR_RICH * least)
 
         found, nearby = self._fewest(rich, None, _Aim(predicted=predicted, searched=self._searched, kept=kept))
