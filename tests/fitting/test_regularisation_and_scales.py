@@ -13,6 +13,8 @@ from bladewright.fitting.matching.residuals import (
     CAMBER_SPREAD,
     CHANNEL_SPREAD,
     SPREAD_ABOUT_START,
+    TANGENT_SPREAD,
+    USUAL_TANGENT,
     regularisation_of,
 )
 from bladewright.fitting.matching.scales import check_bounds, part_range, scales_of
@@ -43,6 +45,15 @@ STRAIGHT = even(np.linspace(0.05, 0.13, 5), np.linspace(0.05, 0.13, 5))
 def test_a_smooth_design_with_sides_alike_satisfies_its_own_prior():
     np.testing.assert_allclose(rows({}, STRAIGHT), 0.0, atol=1e-12)
     assert np.max(np.abs(rows({}))) > 0.1
+
+
+def test_an_unusual_tangent_of_a_blade_counts_by_its_spread_and_more_where_few_points_are_independent():
+    size = 0.2
+    usual = example("centrifugal-impeller").changed("tangent_out", USUAL_TANGENT)
+    unusual = usual.changed("tangent_out", USUAL_TANGENT + TANGENT_SPREAD * size)
+    for design, share, cost in ((usual, 1.0, 0.0), (unusual, 1.0, 1.0), (unusual, 0.25, 4.0)):
+        found = regularisation_of(design, ("tangent_out",), np.array([size]), independent_share=share)
+        np.testing.assert_allclose(np.sum(found.rhs**2), cost, atol=1e-24)
 
 
 def test_a_parameter_that_goes_as_far_as_it_is_near_counts_one():

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Design, Part
 from bladewright.errors import DesignError
 from bladewright.fitting.free_parameters import EDGES
@@ -24,7 +25,7 @@ from bladewright.fitting.models.model import Model, ModelShape
 from bladewright.numerics.least_squares import ConstrainedProblem
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import number_paths
-from bladewright.section.unified_limits import THICKNESSES
+from bladewright.section.unified_limits import TANGENTS, THICKNESSES
 
 SPREAD_ABOUT_START = 3.0
 """spread of a parameter about its start, in its own scale. It only holds what nothing else does
@@ -46,6 +47,11 @@ cloud bends (design/matching_constants.md)."""
 CAMBER_SPREAD = 0.3
 """spread of the difference of upper and lower thickness, in their scale: a camber line in the middle is preferred
 (design/matching_constants.md)."""
+
+USUAL_TANGENT, TANGENT_SPREAD = 0.4, 1.5
+"""usual tangent proportion of the camber lines of a unified blade, and the spread about it, in the scale of tangents.
+Nearly straight cambers hardly show them, and they went to their bounds, where metal angles cease to matter
+(design/matching.md)."""
 
 Row = tuple[list[tuple[str, float]], float, float]
 """paths of parameters and their factors, the usual value of their sum, and its spread in the scale of the parameters"""
@@ -69,10 +75,13 @@ class Regularisation:
         return self.matrix @ z - self.rhs
 
 
-def regularisation_of(start: Design, paths: Sequence[str], size: Reals, *, ends_shown: bool = True) -> Regularisation:
+def regularisation_of(
+    start: Design, paths: Sequence[str], size: Reals, *, ends_shown: bool = True, independent_share: float = 1.0
+) -> Regularisation:
     """The regularisation about a start, for parameters (k,) of scale `size`.
 
-    `ends_shown` tells whether rows of points show both ends of the blade.
+    `ends_shown` tells whether rows of points show both ends of the blade. Tangents are weighed by the share of the
+    points that count as independent, as edge heights are.
     """
     spread = np.where([path.startswith(MERIDIANS) for path in paths], CHANNEL_SPREAD, SPREAD_ABOUT_START)
     corners = set[str]() if ends_shown else _corners(start)
@@ -80,8 +89,10 @@ def regularisation_of(start: Design, paths: Sequence[str], size: Reals, *, ends_
     rows, rhs_rows = [np.diag(1.0 / spread)], [np.zeros(len(paths))]
     values = start.parameters()
     index = {path: i for i, path in enumerate(paths)}
+    shared = float(np.sqrt(independent_share))
+    tangents = _tangents(start, TANGENT_SPREAD * shared)
     bends = chain(_second_differences(start), _meridional_bends(start))
-    for terms, usual, width in chain(bends, _thickness_differences(start)):
+    for terms, usual, width in chain(bends, _thickness_differences(start), tangents):
         free = [index[path] for path, _ in terms if path in index]
         if not free:
             continue
@@ -142,6 +153,13 @@ def _thickness_differences(start: Design) -> Iterator[Row]:
     if [len(row) for row in above] == [len(row) for row in below]:
         for pair in zip(chain(*above), chain(*below), strict=True):
             yield list(zip(pair, (1.0, -1.0), strict=True)), 0.0, CAMBER_SPREAD
+
+
+def _tangents(start: Design, spread: float) -> Iterator[Row]:
+    if isinstance(start, UnifiedBlade):
+        for path in start.parameters():
+            if path.startswith(TANGENTS):
+                yield [(path, 1.0)], USUAL_TANGENT, spread
 
 
 def paths_of(name: str, law: Any) -> list[list[str]]:

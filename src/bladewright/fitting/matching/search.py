@@ -314,7 +314,8 @@ def _prepared_round(
     exact = task.allow_outliers and noise_estimate.noise < EXACT * float(np.max(np.ptp(points, axis=0)))
     scales = scales_of(start, paths, model.chord, task.bounds)
     share = noise_estimate.independent_share(len(paths))
-    regularisation = regularisation_of(start, paths, scales.size, ends_shown=ends.in_rows(model.chord))
+    shown, own = ends.in_rows(model.chord), 1.0 if task.preliminary else share
+    regularisation = regularisation_of(start, paths, scales.size, ends_shown=shown, independent_share=own)
     cloud_residuals = CloudResiduals(
         points=points,
         roots=np.sqrt(task.weights * rows),
@@ -329,9 +330,7 @@ def _prepared_round(
         start=start,
         paths=paths,
         scales=scales,
-        regularisation=regularisation.scaled(
-            task.regularisation_factor / float(np.sqrt(share if task.preliminary else 1.0))
-        ),
+        regularisation=regularisation.scaled(task.regularisation_factor / float(np.sqrt(share / own))),
         independent_share=share / task.regularisation_factor**2,
         hint=footpoints,
         margin=EDGE_RADIUS_MARGIN[points.shape[1]] * task.margin_factor,
