@@ -134,6 +134,14 @@ def foreign():
             asked={"max of chord": 1e-3, **WELL, "seconds": 3 if flat else 60},
             limit=60.0 if flat else 240.0,
         )
+    yield Row(
+        name="orc-nozzle-camber-angle",
+        group="foreign",
+        cloud=lambda _: of_shape("orc-nozzle"),
+        options={"parameters": 22, "family": "camber-angle"},
+        asked={"mean of chord": 1e-3, "parameters": 22, "passed": True},
+        limit=60.0,
+    )
 
 
 def naca():

@@ -216,7 +216,8 @@ class Acceptance:
             if value > limit * chord:
                 yield (
                     f"the {word} deviation is {self._length(value, 4)}, {100 * value / chord:.2g} % of the chord, and "
-                    f"{100 * limit:.2g} % are allowed where no tolerance is stated: give more parameters"
+                    f"{100 * limit:.2g} % are allowed where no tolerance is stated: give more parameters, or try "
+                    "another family"
                 )
         if self.target.parameters is None and self._largest > NEAR_EVERYWHERE * chord and self._is_systematic:
             yield self._not_found
