@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import qr, solve_triangular
+from scipy.linalg import qr, solve_triangular  # real: residuals of measured points
 from scipy.linalg.lapack import dormqr
 from scipy.optimize import nnls
 
