@@ -4,7 +4,7 @@
 
 Makes every cloud and compares it with the checksum that was written when the seeds were drawn (`secrets`, 24 November
 2026, the last thirty on the 28th). Nothing is matched here: `design/matching.py --holdout` does that once, when the
-work on matching is done. All but the last thirty have been matched (group `opened`): work may look at them since.
+work on matching is done. All of them have been matched (group `opened`): work may look at them since.
 `--draw` draws others.
 """
 
@@ -207,40 +207,39 @@ OPENED: dict[str, tuple[int, float]] = {
     "opened-profile-30": (3699223043, 0.0386925474),
     "opened-wedge-diffuser-29": (2613506100, 0.331214517),
     "opened-wedge-diffuser-30": (2701444372, 0.0200727197),
+    "opened-unified-31": (1172528795, 0.0217647608),
+    "opened-unified-32": (3057123344, 0.383120148),
+    "opened-unified-33": (109303977, 7.43653177),
+    "opened-unified-34": (4175402658, 0.0405021094),
+    "opened-unified-35": (516803335, 0.039882031),
+    "opened-curvature-meanline-31": (3634630219, 0.259728513),
+    "opened-curvature-meanline-32": (1516781393, 0.630770627),
+    "opened-curvature-meanline-33": (3690105543, 0.0336272828),
+    "opened-curvature-meanline-34": (886375799, 0.191151346),
+    "opened-curvature-meanline-35": (1522332649, 0.0402694392),
+    "opened-suction-pressure-31": (867491589, 0.125246139),
+    "opened-suction-pressure-32": (2372151635, 0.199830263),
+    "opened-suction-pressure-33": (2659185276, 0.0318883769),
+    "opened-suction-pressure-34": (1972923766, 0.115443188),
+    "opened-suction-pressure-35": (2104411149, 0.0899436399),
+    "opened-camber-angle-31": (2704406129, 0.936211807),
+    "opened-camber-angle-32": (3461545877, 1.8914008),
+    "opened-camber-angle-33": (657083292, 0.138146819),
+    "opened-camber-angle-34": (2805970871, 0.148147106),
+    "opened-camber-angle-35": (3971180321, 0.131962063),
+    "opened-profile-31": (3570091509, 0.0219631492),
+    "opened-profile-32": (1073478285, 0.33660648),
+    "opened-profile-33": (2730559706, 1.49225466),
+    "opened-profile-34": (2835548230, 0.327841686),
+    "opened-profile-35": (2297322149, 0.546537355),
+    "opened-wedge-diffuser-31": (3409243731, 0.119743403),
+    "opened-wedge-diffuser-32": (3231340221, 0.587134617),
+    "opened-wedge-diffuser-33": (2723050379, 0.0249854071),
+    "opened-wedge-diffuser-34": (521089757, 0.302437926),
+    "opened-wedge-diffuser-35": (3496446274, 0.0168469219),
 }
 """the same of those that have been matched: they show nothing more about clouds that nobody has seen"""
-SEEDS: dict[str, tuple[int, float]] = {
-    "hold-out-unified-1": (1172528795, 0.0217647608),
-    "hold-out-unified-2": (3057123344, 0.383120148),
-    "hold-out-unified-3": (109303977, 7.43653177),
-    "hold-out-unified-4": (4175402658, 0.0405021094),
-    "hold-out-unified-5": (516803335, 0.039882031),
-    "hold-out-curvature-meanline-1": (3634630219, 0.259728513),
-    "hold-out-curvature-meanline-2": (1516781393, 0.630770627),
-    "hold-out-curvature-meanline-3": (3690105543, 0.0336272828),
-    "hold-out-curvature-meanline-4": (886375799, 0.191151346),
-    "hold-out-curvature-meanline-5": (1522332649, 0.0402694392),
-    "hold-out-suction-pressure-1": (867491589, 0.125246139),
-    "hold-out-suction-pressure-2": (2372151635, 0.199830263),
-    "hold-out-suction-pressure-3": (2659185276, 0.0318883769),
-    "hold-out-suction-pressure-4": (1972923766, 0.115443188),
-    "hold-out-suction-pressure-5": (2104411149, 0.0899436399),
-    "hold-out-camber-angle-1": (2704406129, 0.936211807),
-    "hold-out-camber-angle-2": (3461545877, 1.8914008),
-    "hold-out-camber-angle-3": (657083292, 0.138146819),
-    "hold-out-camber-angle-4": (2805970871, 0.148147106),
-    "hold-out-camber-angle-5": (3971180321, 0.131962063),
-    "hold-out-profile-1": (3570091509, 0.0219631492),
-    "hold-out-profile-2": (1073478285, 0.33660648),
-    "hold-out-profile-3": (2730559706, 1.49225466),
-    "hold-out-profile-4": (2835548230, 0.327841686),
-    "hold-out-profile-5": (2297322149, 0.546537355),
-    "hold-out-wedge-diffuser-1": (3409243731, 0.119743403),
-    "hold-out-wedge-diffuser-2": (3231340221, 0.587134617),
-    "hold-out-wedge-diffuser-3": (2723050379, 0.0249854071),
-    "hold-out-wedge-diffuser-4": (521089757, 0.302437926),
-    "hold-out-wedge-diffuser-5": (3496446274, 0.0168469219),
-}
+SEEDS: dict[str, tuple[int, float]] = {}
 """seed by name, and the rms distance of its points from the origin [m]"""
 ALL = OPENED | SEEDS
 
