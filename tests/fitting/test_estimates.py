@@ -62,13 +62,19 @@ def test_a_parameter_on_a_bound_is_known_and_the_others_are_as_if_it_were_given(
     statistics = parameter_estimates(found(slopes, low=1.0)[0])
     others = slopes[:, 1:]
     rows = found(slopes)[1]
-    variance = np.sum(rows**2) / (POINTS - COUNT)
+    variance = np.sum(rows**2) / (POINTS - COUNT + 1)
     np.testing.assert_allclose(statistics.covariance[1:, 1:], variance * np.linalg.inv(others.T @ others), rtol=1e-9)
     assert not statistics.covariance[0].any()
     first, *_ = statistics.estimates
     assert first.at_bound
     assert first.low == first.value == first.high
     assert statistics.rank == COUNT
+
+
+def test_parameters_that_all_lie_on_bounds_are_all_known():
+    statistics = parameter_estimates(found(slopes_of(0), low=np.arange(1.0, COUNT + 1.0))[0])
+    assert not statistics.covariance.any()
+    assert (statistics.rank, statistics.condition) == (COUNT, 1.0)
 
 
 def test_intervals_hold_the_truth_as_often_as_they_say():

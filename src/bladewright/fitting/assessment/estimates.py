@@ -157,6 +157,7 @@ def _linearised(match: Match) -> tuple[Reals, Reals, float, float]:
     excess[count : count + len(cloud.ends.near)] = excess[cloud.ends.near]
     places = neighbourhood_of(cloud.points, match.state.footpoints).places
     share = independent_share(places[taking], (rows / np.sqrt(excess))[:count][taking])
-    points, parameters = int(np.count_nonzero(taking)), len(problem.paths)
+    inside = problem.scales.inside(problem.values_of(match.design))
+    points, parameters = int(np.count_nonzero(taking)), int(np.count_nonzero(inside))
     variance = float(np.sum(rows[:count] ** 2 / excess[:count])) / max(points - parameters, 1) / share
     return slopes, excess, variance, max(share * points - parameters, 1.0)
