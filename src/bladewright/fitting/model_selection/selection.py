@@ -21,7 +21,7 @@ from bladewright.fitting.matching.search import (
     searched,
     without_false_outliers,
 )
-from bladewright.fitting.model_selection.edges import from_other_edges, trusted_or_from_other_edges, with_sharp_edges
+from bladewright.fitting.model_selection.edges import from_other_edges, nearest_from_other_edges, with_sharp_edges
 from bladewright.fitting.model_selection.structure import Structure, reshaped, structure_of
 from bladewright.fitting.model_selection.structure_search import (
     ENOUGH,
@@ -61,7 +61,7 @@ def selected_match(
     few, noise = task.thinned(QUICK_POINTS) if task.dimension == 3 else several, GUESS_NOISE if guessed else None
     few = replace(few, preliminary=guessed and task.dimension == 3)
     found = searched(few, first, noise=noise, min_reduction=ROUGH_REDUCTION)
-    found = trusted_or_from_other_edges(several, found, GUESS_NOISE) if task.dimension == 2 and guessed else found
+    found = nearest_from_other_edges(few, found, GUESS_NOISE) if guessed else found
     if target.structured and target.tolerance is None:
         return _of_structure(several, many, found, like or structure_of(first), guessed=guessed), ""
     held = target.parameters is not None and bool(corner_radii(first)) and found.ends.in_rows(found.model.chord)
