@@ -9,7 +9,9 @@ from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.blade.native.blade import Blade
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.blade import arranged_channels, first_blade, spans_along_y
-from bladewright.fitting.matching.search import Task, evaluated
+from bladewright.fitting.matching.search import ROUGH_REDUCTION, Task, evaluated, searched
+from bladewright.fitting.model_selection.edges import nearest_from_other_edges
+from bladewright.fitting.model_selection.selection import GUESS_NOISE
 from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.nurbs.closest import closest_on_surface
 from bladewright.section.laws import Span
@@ -53,6 +55,17 @@ def test_the_search_of_a_first_blade_leaves_the_metal_angles_of_its_slices(name:
     found, _ = first_blade(_cloud(truth, 1000), arrangement="annular")
     there, here = (np.real(span.values(getattr(design, name))) for design in (truth.design, found))
     assert np.max(np.abs(there - here)) < 20.0
+
+
+def test_a_first_blade_is_brought_nearer_from_usual_edges() -> None:
+    points = _cloud(_truth("vki-ls89"), 600)
+    start, outline = first_blade(points, arrangement="linear")
+    task = Task(
+        points=points, weights=np.ones(600), free=FreeParameters(), bounds={}, preliminary=True, outline=outline
+    )
+    plain = searched(task, start, noise=GUESS_NOISE, min_reduction=ROUGH_REDUCTION)
+    nearer = nearest_from_other_edges(task, plain, GUESS_NOISE)
+    assert nearer.mean_distance < 0.7 * plain.mean_distance
 
 
 def test_the_regularisation_of_a_preliminary_search_counts_against_independent_points() -> None:
