@@ -3,8 +3,8 @@
     python design/hold_outs.py [--draw]
 
 Makes every cloud and compares it with the checksum that was written when the seeds were drawn (`secrets`, 24 November
-2026, the last thirty on the 28th). Nothing is matched here: `design/matching.py --holdout` does that once, when the
-work on matching is done. All of them have been matched (group `opened`): work may look at them since.
+2026, thirty on the 28th, and the thirty that are put aside later that day). Nothing is matched here: `design/matching.py --holdout` does that once, when the
+work on matching is done. Those of the group `opened` have been matched: work may look at them since.
 `--draw` draws others.
 """
 
@@ -239,7 +239,38 @@ OPENED: dict[str, tuple[int, float]] = {
     "opened-wedge-diffuser-35": (3496446274, 0.0168469219),
 }
 """the same of those that have been matched: they show nothing more about clouds that nobody has seen"""
-SEEDS: dict[str, tuple[int, float]] = {}
+SEEDS: dict[str, tuple[int, float]] = {
+    "hold-out-unified-1": (2679196276, 0.0323893692),
+    "hold-out-unified-2": (3599124766, 0.136593004),
+    "hold-out-unified-3": (1202953173, 0.23699733),
+    "hold-out-unified-4": (3198366771, 0.00817228293),
+    "hold-out-unified-5": (2594346827, 0.061043128),
+    "hold-out-curvature-meanline-1": (3182803425, 0.318016557),
+    "hold-out-curvature-meanline-2": (3986231504, 0.130020099),
+    "hold-out-curvature-meanline-3": (3757357537, 0.0999192215),
+    "hold-out-curvature-meanline-4": (653579055, 0.263711947),
+    "hold-out-curvature-meanline-5": (1339240508, 0.463303981),
+    "hold-out-suction-pressure-1": (2867459381, 0.0621781396),
+    "hold-out-suction-pressure-2": (544204187, 0.156677202),
+    "hold-out-suction-pressure-3": (3548422722, 0.45041454),
+    "hold-out-suction-pressure-4": (1632518768, 0.62729069),
+    "hold-out-suction-pressure-5": (3527118230, 0.0979560655),
+    "hold-out-camber-angle-1": (583960731, 0.842926371),
+    "hold-out-camber-angle-2": (3404582262, 0.879766148),
+    "hold-out-camber-angle-3": (1909420948, 0.0284189586),
+    "hold-out-camber-angle-4": (1018832618, 0.128980228),
+    "hold-out-camber-angle-5": (1765333051, 0.0421071812),
+    "hold-out-profile-1": (3455548110, 0.0569277444),
+    "hold-out-profile-2": (3206813944, 0.234458386),
+    "hold-out-profile-3": (93096213, 0.165741355),
+    "hold-out-profile-4": (1985864530, 0.150661312),
+    "hold-out-profile-5": (1819609239, 0.0149033124),
+    "hold-out-wedge-diffuser-1": (2445689367, 1.28235436),
+    "hold-out-wedge-diffuser-2": (3367822710, 0.214377325),
+    "hold-out-wedge-diffuser-3": (1090990401, 0.0571475063),
+    "hold-out-wedge-diffuser-4": (3997563530, 0.0881116367),
+    "hold-out-wedge-diffuser-5": (2948392292, 0.0829356524),
+}
 """seed by name, and the rms distance of its points from the origin [m]"""
 ALL = OPENED | SEEDS
 
