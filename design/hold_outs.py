@@ -3,8 +3,8 @@
     python design/hold_outs.py [--draw]
 
 Makes every cloud and compares it with the checksum that was written when the seeds were drawn (`secrets`, 24 November
-2026, thirty on the 28th, and the thirty that are put aside later that day). Nothing is matched here: `design/matching.py --holdout` does that once, when the
-work on matching is done. Those of the group `opened` have been matched: work may look at them since.
+2026, the last sixty on the 28th). Nothing is matched here: `design/matching.py --holdout` does that once, when the work
+on matching is done. Those of the group `opened` have been matched: work may look at them since.
 `--draw` draws others.
 """
 
