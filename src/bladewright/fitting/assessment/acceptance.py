@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 from scipy.stats import binomtest
 
 from bladewright.fitting.assessment.coverage import (
+    HALF_BLADE,
     NORMAL_95,
     ShapeBands,
     foreign_edges,
@@ -53,8 +54,6 @@ LISTED_NAMES = 5
 """parameters that a note lists by name"""
 SIDES = ("upper", "lower")
 """names of the sides, by their number in footpoints"""
-HALF_BLADE_WIDTH = 0.5
-"""width of the blade where its points end, of its thickest, from which it is half a blade."""
 SHEET_THICKNESS = 3e-3
 """thickness, of the chord, below which no blade is. Two sides laid through one side of Aachen's stator were 0.2 % of
 the chord apart; the thinnest example, an impeller, has 1.3 %."""
@@ -117,7 +116,7 @@ class Acceptance:
         if measurement.dimension == 3 and self._mean > GROSS_DEVIATION[0] * chord:
             yield f"a blade in other axes is met no nearer than this: {AXES_HINT}"
         for name, (_, share) in self._uncovered_edges.items():
-            if share <= HALF_BLADE_WIDTH:
+            if share <= HALF_BLADE:
                 yield f"no point lies around the {name}: where it ends and how round it is are guessed"
         for name, width in foreign_edges(self.match).items():
             yield (
@@ -312,7 +311,7 @@ class Acceptance:
             thin = self._length(thickness, 3)
             yield f"the blade is a sheet, no more than {thin} thick at a place of its span: {one_side}"
         for name, (width, share) in self._uncovered_edges.items():
-            if share > HALF_BLADE_WIDTH:
+            if share > HALF_BLADE:
                 yield (
                     f"no point lies around the {name}, where the blade is still {self._length(width, 3)} wide, "
                     f"{share:.0%} of its thickest: is it half a blade? Give the points of the whole"

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
+from scipy.spatial import cKDTree
 from scipy.special import fdtri, ndtri
 
 from bladewright.fitting.assessment.estimates import ParameterEstimates
@@ -15,6 +16,7 @@ from bladewright.fitting.matching.blade_ends import END_PARAMETERS
 from bladewright.fitting.matching.footpoints import EDGE_PARAMETERS, Side, footpoints_at
 from bladewright.fitting.matching.noise import EXACT, SIGNIFICANCE
 from bladewright.fitting.matching.search import Match
+from bladewright.numerics.elementary import length
 from bladewright.numerics.robust import DEVIATION_OVER_MEDIAN
 from bladewright.nurbs.basis import Reals
 
@@ -27,8 +29,15 @@ PARTS = 5
 """parts of the span, and of the chord, in each of which both sides are looked at"""
 COVERED_SHARE = 0.5
 """share of these parts that must have a point on the edge's arc; below it the edge is uncovered."""
-THICKNESS_SAMPLES = 25
-"""places along a section among which it is thickest: half and twice change nothing (design/matching_constants.md)"""
+HALF_BLADE = 0.4
+"""gap between the last points of both sides at an edge, of the blade's thickness, from which it is half a blade: cut at
+half the chord LS89, Aachen's stator and a fan have 0.50, 0.83 and 1.0, whole blades 0.10 (design/matching.md)"""
+HALF_CIRCLE = 1.0 / np.sqrt(2.0)
+"""distance of the middle of a half circle from its ends, of these' distance"""
+GAP_SPACINGS = 3.0
+"""such a gap, in spacings of the points beside it: of points at random one in twenty is wider (an exponential law)"""
+THICKNESS_SAMPLES = (25, 200)
+"""places along the upper side among which a section is thickest, and along the lower one, to which it is measured"""
 REACH = 2.0
 """how far from the end of an edge points are compared, in widths of the blade at `INSIDE`: a face and as much of both
 sides, which are straight so far [-]; half changes nothing of eight made edges, with twice a blunt one is not seen
@@ -93,30 +102,38 @@ def largest_gap(count: int, parts: int) -> float:
 
 
 def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:
-    """Rounded edges without a point on their arc: the blade's width where the points end [m], and of its thickest.
+    """Rounded edges without a point on their arc, and the gap between the last points of both sides there.
 
-    A point on the arc is nearer to its middle than the other side is, which no point before it is.
+    The gap is given in metres, and as a share of the blade's thickness. A point on the arc is nearer to its middle than
+    the other side is, which no point before it is. Of half a blade the edge may lie on the last points of one side:
+    those of the other are then further from it than from any place of a half circle across the gap.
     """
     if not match.model.rounded:
         return {}
-    footpoints, sides = match.state.footpoints, match.state.shape.sides
-    part = _part_of(footpoints.side, footpoints.v)
-    uncovered = {}
+    footpoints, sides, points = match.state.footpoints, match.state.shape.sides, match.problem.cloud_residuals.points
+    part, tree, uncovered = _part_of(footpoints.side, footpoints.v), cKDTree(np.unique(points, axis=0)), {}
     for name, end in EDGE_PARAMETERS.items():
         away = np.where(match.rows, np.abs(footpoints.u - end), np.inf)
         order = np.argsort(away, kind="stable")
-        nearest = order[np.unique(part[order], return_index=True)[1]]
-        nearest = nearest[np.isfinite(away[nearest])]
+        parts, first = np.unique(part[order], return_index=True)
+        nearest = order[first]
+        # both sides of a part of the span
+        nearest = nearest[np.isfinite(away[nearest]) & np.isin((parts + PARTS) % (2 * PARTS), parts)]
         if len(nearest) == 0 or not match.problem.cloud_residuals.overhang.looks_at(end):
             continue
-        side, u, v = footpoints.side[nearest], footpoints.u[nearest], footpoints.v[nearest]
-        near_end, tip, across = (
+        side, u = footpoints.side[nearest], footpoints.u[nearest]
+        v = np.tile(np.mean(footpoints.v[nearest].reshape(2, -1), axis=0), 2)
+        last, tip, across = (
             _places(sides, *at) for at in ((side, u, v), (side, np.full(len(u), end), v), (1 - side, u, v))
         )
-        width = np.sqrt(np.sum((near_end - across) ** 2, axis=-1))
-        if np.mean(np.sqrt(np.sum((near_end - tip) ** 2, axis=-1)) <= width) < COVERED_SHARE:
-            wide = float(np.median(width))
-            uncovered[name] = wide, wide / _thickness(sides, float(np.median(v)))
+        gaps = length(np.diff(last.reshape(2, -1, last.shape[1]), axis=0)[0])
+        width, way = length(last - across), length(last - tip)
+        past = np.mean((way > HALF_CIRCLE * np.tile(gaps, 2)).reshape(2, -1), axis=1)
+        gap, spacing = float(np.median(gaps)), float(np.median(tree.query(points[nearest], k=2)[0][:, 1]))
+        share = gap / _thickness(sides, float(np.median(v)))
+        one_sided = share > HALF_BLADE and gap > GAP_SPACINGS * spacing and np.max(past) > COVERED_SHARE
+        if one_sided or np.mean(way <= width) < COVERED_SHARE:
+            uncovered[name] = gap, share
     return uncovered
 
 
@@ -164,9 +181,12 @@ def least_thickness(match: Match) -> float:
 
 
 def _thickness(sides: Sequence[Side], v: float) -> float:
-    u = np.linspace(0.0, 1.0, THICKNESS_SAMPLES)
-    upper, lower = (_places(sides, np.full(len(u), side), u, np.full(len(u), v)) for side in (0, 1))
-    return float(np.sqrt(np.max(np.sum((upper - lower) ** 2, axis=-1))))
+    """The largest distance of a place on the upper side from the lower side."""
+    upper, lower = (
+        _places(sides, np.full(count, side), np.linspace(0.0, 1.0, count), np.full(count, v))
+        for side, count in enumerate(THICKNESS_SAMPLES)
+    )
+    return float(np.max(cKDTree(lower).query(upper)[0]))
 
 
 def _places(sides: Sequence[Side], side: NDArray[np.intp], u: Reals, v: Reals) -> Reals:
