@@ -3,7 +3,13 @@
 import numpy as np
 import pytest
 
-from bladewright.fitting.assessment.coverage import HALF_BLADE, past_points, shape_bands, uncovered_edges
+from bladewright.fitting.assessment.coverage import (
+    HALF_BLADE,
+    bare_stretches,
+    past_points,
+    shape_bands,
+    uncovered_edges,
+)
 from bladewright.fitting.assessment.estimates import parameter_estimates
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import free_parameters_of
@@ -56,6 +62,47 @@ def test_an_edge_on_the_last_points_of_one_side_alone_is_not_shown(name):
     found = uncovered_edges(searched(task, DESIGNS[name], rounds=0))
     assert set(found) == {"trailing edge"}
     assert found["trailing edge"][1] > HALF_BLADE
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+@pytest.mark.parametrize(
+    ("upper", "lower", "place"),
+    [
+        ((0.0, 1.0), (0.0, 1.0), None),
+        ((0.0, 1.0), (0.5, 1.0), "lower side from u = "),
+        ((0.0, 0.6), (0.0, 1.0), "upper side from u = "),
+        ((0.3, 1.0), (0.3, 1.0), "leading edge"),
+        ((0.0, 0.7), (0.0, 0.7), "trailing edge"),
+        ((0.0, 1.0), None, "lower side from u = 0."),
+    ],
+)
+def test_a_long_way_without_a_point_is_told_with_its_place(name, upper, lower, place):
+    sides = [np.split(cloud(name, *(each or (0.0, 1.0))), 2)[k] for k, each in enumerate((upper, lower))]
+    design = DESIGNS[name]
+    free = free_parameters_of(None, None, started=True)
+
+    def stretches(points):
+        task = Task(points=points, weights=np.ones(len(points)), free=free, bounds={})
+        match = searched(task, design, rounds=0)
+        return match, bare_stretches(match)
+
+    match, found = stretches(np.concatenate(sides))
+    if lower is None:
+        feet = match.state.footpoints
+        shown = (feet.side == 0) | (np.abs(feet.u - 0.45) > 0.15)
+        match, found = stretches(np.concatenate(sides)[shown])
+    assert [where.startswith(place) for _, where in found] == ([True] * len(found) if place else [])
+    assert bool(found) is (place is not None)
+    assert all(way > 0.1 * match.model.chord for way, _ in found)
+
+
+def test_a_side_that_is_not_shown_does_not_pass_where_a_law_goes_on_through_it():
+    """The laws found here are the true section's, and said to be known to nothing."""
+    sections = example("vki-ls89").build().sections[0].curves
+    whole, part = np.linspace(0.0, 1.0, 300), np.linspace(0.4, 1.0, 150)
+    found = fit(np.concatenate([np.real(sections["lower"](whole)), np.real(sections["upper"](part))]))
+    assert not found.passed
+    assert any("no point shows the upper side from u = 0" in failure for failure in found.failures)
 
 
 def test_half_a_section_with_nothing_given_does_not_pass():

@@ -13,6 +13,7 @@ from bladewright.fitting.assessment.coverage import (
     HALF_BLADE,
     NORMAL_95,
     ShapeBands,
+    bare_stretches,
     foreign_edges,
     least_thickness,
     loose_ends,
@@ -125,6 +126,8 @@ class Acceptance:
             )
         if self._nothing_asked:
             yield from self._bare_parts()
+        else:
+            yield from self._bare_stretches
         if self._loose_ends:
             yield self._where_it_ends(self._loose_ends)
         estimates = self.statistics.estimates
@@ -155,6 +158,15 @@ class Acceptance:
     @cached_property
     def _bands(self) -> ShapeBands:
         return shape_bands(self.match, self.statistics)
+
+    @cached_property
+    def _bare_stretches(self) -> list[str]:
+        """Long ways around the blade without a point, each a sentence."""
+        chord = self.match.model.chord
+        return [
+            f"no point shows the {place}: {self._length(way, 3)} without one, {100 * way / chord:.2g} % of the chord"
+            for way, place in bare_stretches(self.match)
+        ]
 
     @property
     def _mean(self) -> float:
@@ -275,6 +287,8 @@ class Acceptance:
                 f"{100 * limits[worst] / chord:.2g} % of the chord are allowed: is it a whole blade? Give more points "
                 "there, a start, a number of parameters or a tolerance"
             )
+        for words in self._bare_stretches:
+            yield f"{words}: is it a whole blade? Give points there, a start, a number of parameters or a tolerance"
         allowed = max(GROSS_DEVIATION[0] * chord, one_point)
         unknown = {name: gap for name, gap in self._loose_ends.items() if gap > allowed}
         if unknown:

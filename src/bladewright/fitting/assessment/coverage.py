@@ -16,7 +16,7 @@ from bladewright.fitting.matching.blade_ends import END_PARAMETERS
 from bladewright.fitting.matching.footpoints import EDGE_PARAMETERS, Side, footpoints_at
 from bladewright.fitting.matching.noise import EXACT, SIGNIFICANCE
 from bladewright.fitting.matching.search import Match
-from bladewright.numerics.elementary import length
+from bladewright.numerics.elementary import cumulative_length, length
 from bladewright.numerics.robust import DEVIATION_OVER_MEDIAN
 from bladewright.nurbs.basis import Reals
 
@@ -36,6 +36,13 @@ HALF_CIRCLE = 1.0 / np.sqrt(2.0)
 """distance of the middle of a half circle from its ends, of these' distance"""
 GAP_SPACINGS = 3.0
 """such a gap, in spacings of the points beside it: of points at random one in twenty is wider (an exponential law)"""
+BARE_SHARE, BARE_GAPS = 0.1, 5.0
+"""way without a point, of the chord, from which a blade is not shown there if it is so many usual gaps: whole clouds
+have 0.025 at most, or 2.9 usual gaps, and a tenth of one side left out 0.12 and 13 (design/matching.md)"""
+AT_EDGE = 0.01
+"""share of such a way within which an edge is at its end"""
+WAY_SAMPLES = 401
+"""places along a side between which its length is taken as straight"""
 THICKNESS_SAMPLES = (25, 200)
 """places along the upper side among which a section is thickest, and along the lower one, to which it is measured"""
 REACH = 2.0
@@ -135,6 +142,45 @@ def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:
         if one_sided or np.mean(way <= width) < COVERED_SHARE:
             uncovered[name] = gap, share
     return uncovered
+
+
+def bare_stretches(match: Match) -> list[tuple[float, str]]:
+    """The longest way around the sections without a point [m], and where, in each part of the span with a long one.
+
+    It is compared with the chord, and with the gap between neighbours in which the middle of all ways lies, so that
+    neither few points nor rows of them seem to leave some out. A law of few control points goes on through such a gap
+    as if it were known there.
+    """
+    feet, sides = match.state.footpoints.part(match.rows), match.state.shape.sides
+    part, found = np.minimum((PARTS * feet.v).astype(np.intp), PARTS - 1), list[tuple[float, str]]()
+    u = np.linspace(0.0, 1.0, WAY_SAMPLES)
+    for number in np.unique(part):
+        own = feet.part(part == number)
+        v = float(np.mean(own.v))
+        places = (_places(sides, np.full(len(u), side), u, np.full(len(u), v)) for side in (0, 1))
+        upper, lower = (cumulative_length(each) for each in places)
+        whole = upper[-1] + lower[-1]
+        ways = np.sort(np.where(own.side == 0, np.interp(own.u, u, upper), whole - np.interp(own.u, u, lower)))
+        gaps = np.diff(ways, append=ways[0] + whole)
+        ordered, longest = np.sort(gaps), int(np.argmax(gaps))
+        usual = ordered[np.searchsorted(np.cumsum(ordered), 0.5 * whole)]
+        first, last = ways[longest], ways[longest] + gaps[longest]
+        if last - first <= max(BARE_SHARE * match.model.chord, BARE_GAPS * usual):
+            continue
+        at = "" if sides[0].control_points.shape[-1] == 2 else f", v = {v:.2g}"
+        edges = {"leading edge": whole, "trailing edge": upper[-1]}
+        # of an edge at the end of the way its points show the other side
+        ends, middle = np.array([first, last]), 0.5 * (first + last) % whole
+        past = {name: min(place - first, last - place) for name, place in edges.items()}
+        edge = next((name for name, way in past.items() if way > AT_EDGE * (last - first)), "")
+        if edge and not match.problem.cloud_residuals.overhang.looks_at(EDGE_PARAMETERS[edge]):
+            continue
+        if not edge:
+            upward = ends - whole * (last > whole), upper
+            name, (along, own_way) = ("upper", upward) if middle < upper[-1] else ("lower", (whole - ends[::-1], lower))
+            edge = "{} side from u = {:.2f} to {:.2f}".format(name, *np.interp(along, own_way, u))
+        found.append((float(last - first), f"{edge}{at}"))
+    return found
 
 
 def shape_bands(match: Match, statistics: ParameterEstimates) -> ShapeBands:
