@@ -43,8 +43,9 @@ AT_EDGE = 0.01
 """share of such a way within which an edge is at its end"""
 WAY_SAMPLES = 401
 """places along a side between which its length is taken as straight"""
-THICKNESS_SAMPLES = (25, 200)
-"""places along the upper side among which a section is thickest, and along the lower one, to which it is measured"""
+THICKNESS_SAMPLES = (25, 193)
+"""places along the upper side among which a section is thickest: half and twice change nothing
+(design/matching_constants.md); and along the lower one, to which it is measured, these and seven between two"""
 REACH = 2.0
 """how far from the end of an edge points are compared, in widths of the blade at `INSIDE`: a face and as much of both
 sides, which are straight so far [-]; half changes nothing of eight made edges, with twice a blunt one is not seen
