@@ -10,7 +10,6 @@ from scipy.spatial import cKDTree
 from scipy.stats import binomtest
 
 from bladewright.fitting.assessment.coverage import (
-    HALF_BLADE,
     NORMAL_95,
     ShapeBands,
     bare_stretches,
@@ -40,7 +39,7 @@ from bladewright.nurbs.basis import Reals
 
 NEAR_EVERYWHERE = 5e-4
 """largest deviation, of the chord, up to which a match is trusted whatever the noise: 0.05 mm of 100 mm, to which
-blades are milled."""
+blades are milled (design/matching.md)."""
 GROSS_DEVIATION = (1.5e-3, 5e-3)
 """mean and largest deviation, of the chord, beyond which no match is trusted without a tolerance. A mean of 0.15 % on
 both sides of a turbine's throat of 0.3 chords changes it by 1 %; 0.5 % is half the radius of a usual leading edge.
@@ -48,18 +47,25 @@ So well are ends, and sides between the edges, to be known where nothing is aske
 more than their sides: bands of sides that are met are 1.7e-3 at most, of those that are off between their points 3.4e-3
 at least (design/matching.md)."""
 SHARED_VARIANCE = 0.5
-"""share of the variance that neighbours have in common from which more of a deviation is the shape's than noise."""
+"""share of the variance that neighbours have in common from which more of a deviation is the shape's than noise: half
+and twice change notes only (design/matching_constants.md)"""
 LARGEST_OUTLIER_SHARE = 0.1
-"""share of the points that may be outliers: with more, the cloud is not one blade of the family."""
+"""share of the points that may be outliers: with more, the cloud is not one blade of the family; half and twice change
+nothing measured (design/matching_constants.md)"""
 LISTED_NAMES = 5
 """parameters that a note lists by name"""
 SIDES = ("upper", "lower")
 """names of the sides, by their number in footpoints"""
+HALF_BLADE_WIDTH = 0.5
+"""width of the blade where its points end, of its thickest, from which it is half a blade: half and twice change
+nothing measured (design/matching_constants.md)"""
 SHEET_THICKNESS = 3e-3
 """thickness, of the chord, below which no blade is. Two sides laid through one side of Aachen's stator were 0.2 % of
-the chord apart; the thinnest example, an impeller, has 1.3 %."""
+the chord apart; the thinnest example, an impeller, has 1.3 %. Half and twice change nothing measured
+(design/matching_constants.md)."""
 MIN_SIDE_SHARE = 0.1
-"""share of the points between the edges below which a side is not shown"""
+"""share of the points between the edges below which a side is not shown: half and twice change nothing measured
+(design/matching_constants.md)"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -117,7 +123,7 @@ class Acceptance:
         if measurement.dimension == 3 and self._mean > GROSS_DEVIATION[0] * chord:
             yield f"a blade in other axes is met no nearer than this: {AXES_HINT}"
         for name, (_, share) in self._uncovered_edges.items():
-            if share <= HALF_BLADE:
+            if share <= HALF_BLADE_WIDTH:
                 yield f"no point lies around the {name}: where it ends and how round it is are guessed"
         for name, width in foreign_edges(self.match).items():
             yield (
@@ -325,7 +331,7 @@ class Acceptance:
             thin = self._length(thickness, 3)
             yield f"the blade is a sheet, no more than {thin} thick at a place of its span: {one_side}"
         for name, (width, share) in self._uncovered_edges.items():
-            if share > HALF_BLADE:
+            if share > HALF_BLADE_WIDTH:
                 yield (
                     f"no point lies around the {name}, where the blade is still {self._length(width, 3)} wide, "
                     f"{share:.0%} of its thickest: is it half a blade? Give the points of the whole"

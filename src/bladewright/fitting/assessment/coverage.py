@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
-from scipy.spatial import cKDTree
 from scipy.special import fdtri, ndtri
 
 from bladewright.fitting.assessment.estimates import ParameterEstimates
@@ -16,36 +15,32 @@ from bladewright.fitting.matching.blade_ends import END_PARAMETERS
 from bladewright.fitting.matching.footpoints import EDGE_PARAMETERS, Side, footpoints_at
 from bladewright.fitting.matching.noise import EXACT, SIGNIFICANCE
 from bladewright.fitting.matching.search import Match
-from bladewright.numerics.elementary import cumulative_length, length
+from bladewright.numerics.elementary import cumulative_length
 from bladewright.numerics.robust import DEVIATION_OVER_MEDIAN
 from bladewright.nurbs.basis import Reals
 
 ROW_SPREAD_OF_NOISE = 2.0
 """spread of the points at an end, of the cloud's noise, from which they stand in no row: a noisy row is a row all the
-same."""
+same. Half and twice change nothing measured (design/matching_constants.md)."""
 WIDTH_OVER_SPREAD = 4.0 / DEVIATION_OVER_MEDIAN
 """width of evenly scattered values over the deviation that the median of their distances from the middle tells"""
 PARTS = 5
-"""parts of the span, and of the chord, in each of which both sides are looked at"""
+"""parts of the span, and of the chord, in each of which both sides are looked at. Half and twice change nothing
+measured (design/matching_constants.md)."""
 COVERED_SHARE = 0.5
-"""share of these parts that must have a point on the edge's arc; below it the edge is uncovered."""
-HALF_BLADE = 0.4
-"""gap between the last points of both sides at an edge, of the blade's thickness, from which it is half a blade: cut at
-half the chord LS89, Aachen's stator and a fan have 0.50, 0.83 and 1.0, whole blades 0.10 (design/matching.md)"""
-HALF_CIRCLE = 1.0 / np.sqrt(2.0)
-"""distance of the middle of a half circle from its ends, of these' distance"""
-GAP_SPACINGS = 3.0
-"""such a gap, in spacings of the points beside it: of points at random one in twenty is wider (an exponential law)"""
+"""share of these parts that must have a point on the edge's arc; below it the edge is uncovered. Half and twice change
+nothing measured (design/matching_constants.md)."""
 BARE_SHARE, BARE_GAPS = 0.1, 5.0
 """way without a point, of the chord, from which a blade is not shown there if it is so many usual gaps: whole clouds
 have 0.025 at most, or 2.9 usual gaps, and a tenth of one side left out 0.12 and 13 (design/matching.md)"""
 AT_EDGE = 0.01
-"""share of such a way within which an edge is at its end"""
+"""share of such a way within which an edge is at its end: half and twice change nothing measured
+(design/matching_constants.md)"""
 WAY_SAMPLES = 401
-"""places along a side between which its length is taken as straight"""
-THICKNESS_SAMPLES = (25, 193)
-"""places along the upper side among which a section is thickest: half and twice change nothing
-(design/matching_constants.md); and along the lower one, to which it is measured, these and seven between two"""
+"""places along a side between which its length is taken as straight: half and twice change nothing measured
+(design/matching_constants.md)"""
+THICKNESS_SAMPLES = 25
+"""places along a section among which it is thickest: half and twice change nothing (design/matching_constants.md)"""
 REACH = 2.0
 """how far from the end of an edge points are compared, in widths of the blade at `INSIDE`: a face and as much of both
 sides, which are straight so far [-]; half changes nothing of eight made edges, with twice a blunt one is not seen
@@ -60,7 +55,7 @@ PLACES = {2: (41, 1), 3: (21, 11)}
 """places along each side, closer at the edges, and along the span at which it is asked how well the shape is known, by
 dimension; they bound the time"""
 CONFIDENCE = 0.95
-"""probability with which bands and ends are as near as is said [-]"""
+"""probability with which bands and ends are as near as is said [-]. It is that of Neyman 1937."""
 NORMAL_95 = float(ndtri((1.0 + CONFIDENCE) / 2.0))
 """standard deviations to either side within which 95 % of normal errors are [-]"""
 
@@ -110,38 +105,30 @@ def largest_gap(count: int, parts: int) -> float:
 
 
 def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:
-    """Rounded edges without a point on their arc, and the gap between the last points of both sides there.
+    """Rounded edges without a point on their arc: the blade's width where the points end [m], and of its thickest.
 
-    The gap is given in metres, and as a share of the blade's thickness. A point on the arc is nearer to its middle than
-    the other side is, which no point before it is. Of half a blade the edge may lie on the last points of one side:
-    those of the other are then further from it than from any place of a half circle across the gap.
+    A point on the arc is nearer to its middle than the other side is, which no point before it is.
     """
     if not match.model.rounded:
         return {}
-    footpoints, sides, points = match.state.footpoints, match.state.shape.sides, match.problem.cloud_residuals.points
-    part, tree, uncovered = _part_of(footpoints.side, footpoints.v), cKDTree(np.unique(points, axis=0)), {}
+    footpoints, sides = match.state.footpoints, match.state.shape.sides
+    part = _part_of(footpoints.side, footpoints.v)
+    uncovered = {}
     for name, end in EDGE_PARAMETERS.items():
         away = np.where(match.rows, np.abs(footpoints.u - end), np.inf)
         order = np.argsort(away, kind="stable")
-        parts, first = np.unique(part[order], return_index=True)
-        nearest = order[first]
-        # both sides of a part of the span
-        nearest = nearest[np.isfinite(away[nearest]) & np.isin((parts + PARTS) % (2 * PARTS), parts)]
+        nearest = order[np.unique(part[order], return_index=True)[1]]
+        nearest = nearest[np.isfinite(away[nearest])]
         if len(nearest) == 0 or not match.problem.cloud_residuals.overhang.looks_at(end):
             continue
-        side, u = footpoints.side[nearest], footpoints.u[nearest]
-        v = np.tile(np.mean(footpoints.v[nearest].reshape(2, -1), axis=0), 2)
-        last, tip, across = (
+        side, u, v = footpoints.side[nearest], footpoints.u[nearest], footpoints.v[nearest]
+        near_end, tip, across = (
             _places(sides, *at) for at in ((side, u, v), (side, np.full(len(u), end), v), (1 - side, u, v))
         )
-        gaps = length(np.diff(last.reshape(2, -1, last.shape[1]), axis=0)[0])
-        width, way = length(last - across), length(last - tip)
-        past = np.mean((way > HALF_CIRCLE * np.tile(gaps, 2)).reshape(2, -1), axis=1)
-        gap, spacing = float(np.median(gaps)), float(np.median(tree.query(points[nearest], k=2)[0][:, 1]))
-        share = gap / _thickness(sides, float(np.median(v)))
-        one_sided = share > HALF_BLADE and gap > GAP_SPACINGS * spacing and np.max(past) > COVERED_SHARE
-        if one_sided or np.mean(way <= width) < COVERED_SHARE:
-            uncovered[name] = gap, share
+        width = np.sqrt(np.sum((near_end - across) ** 2, axis=-1))
+        if np.mean(np.sqrt(np.sum((near_end - tip) ** 2, axis=-1)) <= width) < COVERED_SHARE:
+            wide = float(np.median(width))
+            uncovered[name] = wide, wide / _thickness(sides, float(np.median(v)))
     return uncovered
 
 
@@ -228,12 +215,9 @@ def least_thickness(match: Match) -> float:
 
 
 def _thickness(sides: Sequence[Side], v: float) -> float:
-    """The largest distance of a place on the upper side from the lower side."""
-    upper, lower = (
-        _places(sides, np.full(count, side), np.linspace(0.0, 1.0, count), np.full(count, v))
-        for side, count in enumerate(THICKNESS_SAMPLES)
-    )
-    return float(np.max(cKDTree(lower).query(upper)[0]))
+    u = np.linspace(0.0, 1.0, THICKNESS_SAMPLES)
+    upper, lower = (_places(sides, np.full(len(u), side), u, np.full(len(u), v)) for side in (0, 1))
+    return float(np.sqrt(np.max(np.sum((upper - lower) ** 2, axis=-1))))
 
 
 def _places(sides: Sequence[Side], side: NDArray[np.intp], u: Reals, v: Reals) -> Reals:

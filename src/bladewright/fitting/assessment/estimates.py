@@ -24,7 +24,8 @@ LARGEST_CONDITION = 1e7
 """condition of the derivatives by the scaled parameters from which one of them is not determined: half and twice change
 nothing measured (design/matching_constants.md)"""
 AT_BOUND = 1e-3
-"""distance from a bound, of a parameter's scale, within which it lies on the bound."""
+"""distance from a bound, of a parameter's scale, within which it lies on the bound. Half and twice change nothing
+measured (design/matching_constants.md)."""
 
 
 @dataclass(frozen=True, kw_only=True)
