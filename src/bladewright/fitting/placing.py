@@ -50,7 +50,8 @@ WEAKEST_SLOPE = 1e-10
 (design/matching_constants.md)"""
 ON_CUT = 1e-3
 """distance from a cut, of the cloud's extent, within which points may lie on its face: 0.1 mm of 100 mm, some standard
-deviations of a scan's noise. Points of the sides there are not weighed, but measured."""
+deviations of a scan's noise. Points of the sides there are not weighed, but measured. Half and twice change nothing
+measured (design/matching_constants.md)."""
 CUT_PLACES = {"hub": "hub", "tip": "shroud", **{edge: edge for edge in EDGES}}
 """the edge or wall in whose place a cut is"""
 

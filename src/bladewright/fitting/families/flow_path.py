@@ -19,21 +19,25 @@ from bladewright.numerics.elementary import cumulative_length, unit
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 
 WALL_COUNTS = (3, 4, 5, 7, 9)
-"""points on each wall beside the blade; the fewest are taken that are near enough."""
+"""points on each wall beside the blade; the fewest are taken that are near enough. Half leaves two parameters fewer,
+twice changes nothing (design/matching_constants.md)."""
 WALL_DISTANCE = 0.01
 """distance of a wall from the one that was found that is near enough, of its length: walls found by points alone are no
-better known, and they are parameters."""
+better known, and they are parameters. Half and twice change nothing measured (design/matching_constants.md)."""
 WALL_MARGIN = 0.1
-"""distance ahead of and behind the blade of the first and last of these points, of its length."""
+"""distance ahead of and behind the blade of the first and last of these points, of its length. Half and twice change
+nothing measured (design/matching_constants.md)."""
 CONTINUATIONS = (0.8, 0.4, 0.2)
 """lengths of the straight continuations at whose ends points stand, of the wall's: the first are taken that do not
-fold"""
+fold. Half and twice change nothing measured (design/matching_constants.md)."""
 LEAST_RADIUS = 0.6
-"""share of the radius at its end that the continuation may lose: it must not meet the axis."""
+"""share of the radius at its end that the continuation may lose: it must not meet the axis. Half and twice change
+nothing measured (design/matching_constants.md)."""
 EDGE_POINTS = 4
-"""points on an edge curve"""
+"""points on an edge curve. Half and twice change nothing measured (design/matching_constants.md)."""
 EDGE_OVERREACH = 0.06
-"""length by which an edge curve reaches past the walls, of its length"""
+"""length by which an edge curve reaches past the walls, of its length. Half and twice change nothing measured
+(design/matching_constants.md)."""
 OPPOSITE_CURVE = {"leading_edge": "trailing_edge", "trailing_edge": "leading_edge", "hub": "shroud", "shroud": "hub"}
 """the curve in whose place each stands when the flow comes from the other side"""
 CURVE_PLACES: Reals = np.linspace(0.0, 1.0, 201)

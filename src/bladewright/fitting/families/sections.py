@@ -46,7 +46,8 @@ OUTLINE_COUNTS = (24, 32, 44)
 """numbers of points of contours that are tried in turn: searches of more end further off (design/matching.md)"""
 OUTLINE_DEVIATION = 1e-4
 """largest distance with which a contour gets no further points where nothing is asked for, and with which exact points
-need no contour, of the chord: a fifth of what acceptance trusts"""
+need no contour, of the chord: a fifth of what acceptance trusts. Half and twice change nothing measured
+(design/matching_constants.md)."""
 BESIDE, BY_CHANCE = 16, 1e-3
 """points beside each other by which a misfit is told that stays with an edge, which seldom has more, and probability
 that noise alone looks like one (`BY_CHANCE`), by the chi-squared test (Pearson 1900) [-]"""

@@ -91,15 +91,17 @@ def _blade_of(sliced: SlicedChannel, header: dict[str, Any]) -> UnifiedBlade:
 
 
 ANNULAR_AT_ONCE = 3e-3
-"""mean distance, in chords, with which slices around the axis are accepted without comparing the other arrangement."""
+"""mean distance, in chords, with which slices around the axis are accepted without comparing the other arrangement.
+Half and twice change nothing measured (design/matching_constants.md)."""
 CLEARLY_LINEAR = 0.5
-"""ratio of mean distances, linear to annular, below which a blade belongs to a cascade."""
+"""ratio of mean distances, linear to annular, below which a blade belongs to a cascade. Half and twice change nothing
+measured (design/matching_constants.md)."""
 ROW_BINS, ROW_HEIGHT = 16, 0.03
 """parts of x in each of which the lowest point is sought; points up to `ROW_HEIGHT` of the span above it belong to the
-same row."""
+same row. Half and twice change nothing measured (design/matching_constants.md)."""
 ROW_DEGREE, ROW_TURNS, ROW_OUTLIER = 5, 5, 6.7
 """degree of the row's line, iterations in which it is found (`ROW_TURNS`), and the distance, in medians, beyond which a
-point does not belong to it (`ROW_OUTLIER`)."""
+point does not belong to it (`ROW_OUTLIER`). Half and twice change nothing measured (design/matching_constants.md)."""
 CLEARER_ROW, CLEAR_ROW = 0.5, 1e-3
 """ratio of the scatter of rows about the axis to that on planes which decides; rows on planes must also scatter by less
 than `CLEAR_ROW` of the span. Rows of Aachen's stator with noise scatter by 1.7e-4 of the span about the axis, and by

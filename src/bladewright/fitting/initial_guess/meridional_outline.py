@@ -8,7 +8,8 @@ from bladewright.numerics.elementary import cross2
 from bladewright.nurbs.basis import Reals
 
 LEAST_COVERED = 0.985
-"""share of the points that the outline must enclose"""
+"""share of the points that the outline must enclose. Half and twice change nothing measured
+(design/matching_constants.md)."""
 RING_PLACES = 120
 """places of the boundary between which corners are sought; the search takes their cube in time
 (design/first_guesses.md)."""

@@ -10,7 +10,8 @@ import numpy as np
 from bladewright.errors import BladewrightError, FitError
 
 KEPT_DESIGNS = 3
-"""designs of as many parameters that are kept: the nearest may be one that cannot be built"""
+"""designs of as many parameters that are kept: the nearest may be one that cannot be built. Half and twice change
+nothing measured (design/matching_constants.md)."""
 
 
 @dataclass(frozen=True, eq=False)

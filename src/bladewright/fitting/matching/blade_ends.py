@@ -25,25 +25,30 @@ inside the sides, and is nearer to the wall than to the sides by the ratio `FACE
 (design/matching_constants.md)."""
 FACE_OUTLIERS, FACE_OUTLIERS_NEARER_WALL = 20, 0.1
 """outliers on an end face belong to it where there are so many, and half of them are nearer to the wall than to the
-sides by the ratio `FACE_OUTLIERS_NEARER_WALL`."""
+sides by the ratio `FACE_OUTLIERS_NEARER_WALL`. Half and twice change nothing measured
+(design/matching_constants.md)."""
 DEEPEST_FACE_POINT = 0.2
 """depth of the deepest point of an end face, of the half thickness of the blade: shallower ones lie beside an edge that
-is not yet found."""
+is not yet found. Half and twice change nothing measured (design/matching_constants.md)."""
 PAST_END_BAND = 0.05
-"""distance from an end, in v, within which a point may come to lie past it while the design changes."""
+"""distance from an end, in v, within which a point may come to lie past it while the design changes. Half and twice
+change nothing measured (design/matching_constants.md)."""
 MOST_WALL_POINTS = 400
-"""points of a wall beside the blade that count: as many as rows at an end have"""
+"""points of a wall beside the blade that count: as many as rows at an end have. With half four parameters of Aachen's
+stator are not determined, not one; twice changes nothing (design/matching_constants.md)."""
 FEWEST_ROW_POINTS = 5
-"""points that a row at an end needs."""
+"""points that a row at an end needs. Half and twice change nothing measured (design/matching_constants.md)."""
 ROW_WIDTH, ROW_LEAST_WIDTH = 4.5, 1e-6
 """a point belongs to the row at an end within so many standard deviations of its middle, but within `ROW_LEAST_WIDTH`
-of the places' extent in any case: the sides themselves are no nearer to the walls."""
+of the places' extent in any case: the sides themselves are no nearer to the walls. Half and twice change nothing
+measured (design/matching_constants.md)."""
 ROW_DEGREE, ROW_TURNS, ROW_SETTLING_TURNS = 6, 30, 3
 """highest degree of the polynomial by which a row may be off the wall; it is found in `ROW_TURNS` reweighted turns as a
-quantile, then in `ROW_SETTLING_TURNS` by least squares."""
+quantile, then in `ROW_SETTLING_TURNS` by least squares. Half and twice change nothing measured
+(design/matching_constants.md)."""
 OUTER_QUANTILE = 0.2
 """share of the places at an end that lie outside the law that is first sought: a row is the outermost, and beside it
-lie points of the sides."""
+lie points of the sides. Half and twice change nothing measured (design/matching_constants.md)."""
 ROW_SPREAD = 1e-3
 """spread of the points at an end below which they stand in a row on the wall, of the chord
 (design/matching_constants.md)."""
@@ -235,11 +240,13 @@ STATIONS: Reals = np.concatenate([[0.0], np.linspace(1.0 / 32.0, 31.0 / 32.0, 16
 """places along the span, v, at which each edge is looked at; more add rows that say the same."""
 COVERED_SPAN = 0.05
 """distance of the nearest point from an end of the span, in v, up to which the cloud shows that end: it may show a part
-of the span only."""
+of the span only. Half and twice change nothing measured (design/matching_constants.md)."""
 SPANWISE_WEIGHT = 0.2
-"""factor of distances along the edge while the nearest point is sought: a cloud may have few rows along the span."""
+"""factor of distances along the edge while the nearest point is sought: a cloud may have few rows along the span. Half
+and twice change nothing measured (design/matching_constants.md)."""
 NEIGHBOURS = 6
-"""points beside an edge whose distances from each other are looked at."""
+"""points beside an edge whose distances from each other are looked at. Half and twice change nothing measured
+(design/matching_constants.md)."""
 ALLOWED_SPACINGS, ALLOWED_SPACINGS_EXACT = 1.5, 15.0
 """allowed overhang in spacings of the points beside the edge, and in a cloud that is exact (`ALLOWED_SPACINGS_EXACT`),
 where the true edge must cost nothing even by chance: it had cost 2.4e-3 of the chord on an impeller and on Rotor 67

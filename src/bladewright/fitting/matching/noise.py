@@ -47,8 +47,9 @@ LARGEST_GROUP, SMALL_GROUP = 0.05, 20
 """largest group of outliers, as a share of the points, but `SMALL_GROUP` points are always allowed: half and twice
 change nothing measured (design/matching_constants.md)."""
 END_BAND, WRONG_END_SHARE = 0.02, 0.2
-"""distance from an end of the blade, in v, within which points show it; where more than `WRONG_END_SHARE` of them
-lie past the end, the end is wrong and not the points."""
+"""distance from an end of the blade, in v, within which points show it; where more than `WRONG_END_SHARE` of them lie
+past the end, the end is wrong and not the points. Half and twice change nothing measured
+(design/matching_constants.md)."""
 PAST_END_BY_CHANCE, LEVEL_SLOPE = 1, 0.05
 """points level with the sides that may lie past an end by chance, and height per length past it up to which a point is
 level (`LEVEL_SLOPE`): more show that the end is wrong. Without, an impeller with outliers is 3.3e-3 of the chord off,
@@ -75,7 +76,8 @@ measured (design/matching_constants.md)."""
 CROWD = 2
 """neighbours that are outliers beside one of a part that is not found: of 1 % that scatter, 3 in 1,000 have so many."""
 SIGNIFICANCE = 1e-3
-"""probability of what is called no chance: the level of tests whose null hypothesis is a good match"""
+"""probability of what is called no chance: the level of tests whose null hypothesis is a good match. (Neyman and
+Pearson 1933)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -246,7 +248,8 @@ def doubted_outliers(
 
 
 COMPARED_POINTS = 20_000
-"""points that are compared with their neighbours; it bounds the time, and their noise is known to half a percent."""
+"""points that are compared with their neighbours; it bounds the time, and their noise is known to half a percent. Half
+and twice change nothing measured (design/matching_constants.md)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

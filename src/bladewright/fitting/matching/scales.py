@@ -61,7 +61,8 @@ ON_BOUND = 1e-9
 """distance from a bound, of a parameter's scale, within which it is held by it: half and twice change no match of a
 moved section (design/matching_constants.md)"""
 INSIDE = 1e-3
-"""how far inside its field's limits a parameter stays, of its size: a search may differentiate at its bounds"""
+"""how far inside its field's limits a parameter stays, of its size: a search may differentiate at its bounds. Half and
+twice change nothing measured (design/matching_constants.md)."""
 
 
 RangeRule = Callable[[float, float], ParameterRange]

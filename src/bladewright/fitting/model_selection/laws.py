@@ -28,7 +28,8 @@ MOST_CHORD, MOST_SPAN, MOST_CURVE = 24, 12, 12
 """control points along the chord, along the span and of a meridional curve at most; they bound the time
 (design/matching_constants.md)."""
 LEAST_SHARE = 0.5
-"""share of a law's smallest control point, where that is positive, below which none falls of the law that is resized"""
+"""share of a law's smallest control point, where that is positive, below which none falls of the law that is resized.
+Half and twice change nothing measured (design/matching_constants.md)."""
 COMPARED_PLACES: Reals = np.linspace(0.0, 1.0, 101)
 """parameters at which laws and curves are compared"""
 

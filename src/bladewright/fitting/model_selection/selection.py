@@ -37,9 +37,11 @@ FINAL_REDUCTION = 1e-3
 """predicted relative reduction of the cost that a step of the last search needs: half and twice change nothing measured
 (design/matching_constants.md)."""
 QUICK_POINTS, SEVERAL_POINTS, THOROUGH_POINTS = 1000, 4000, 12_000
-"""points of the first search in space, of those that choose control points, and of the last; time grows with them."""
+"""points of the first search in space, of those that choose control points, and of the last; time grows with them. Half
+and twice change nothing measured (design/matching_constants.md)."""
 WEAK_REGULARISATION = 0.1
-"""factor of the regularisation where a match is only improved."""
+"""factor of the regularisation where a match is only improved. Half and twice change nothing measured
+(design/matching_constants.md)."""
 CORNERS_HELD_NOTE = "the radii of the channel's corners are read off the points, held, and not counted"
 """note where the channel's corners are read off the points"""
 HELD_NOTE = "the points do not determine {}, which are held where a smooth design has them"

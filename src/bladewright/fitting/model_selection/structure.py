@@ -64,7 +64,9 @@ knots include those of one, two and three: cubic laws of 4, 5 and 6 control poin
 RICH_SPAN = {"thickness": 6, "radius": 4, "": 9}
 """control points along the span of its laws, by what their names say: six hold cubic laws of 4, nine of 4, 5 and 6."""
 RICH_CHANNEL = (9, 9, 6, 6)
-"""control points of the edges, of hub and of shroud: six hold cubic curves of 4, nine of 4, 5 and 6."""
+"""control points of the edges, of hub and of shroud: six hold cubic curves of 4, nine of 4, 5 and 6. Half and twice
+move the radial diffuser from 3.9e-4 to 3.1e-4 of the chord, and from 25 parameters to 45
+(design/matching_constants.md)."""
 RICH_SECTION = {2: 12, 3: 8}
 """control points along the chord of a rich structure of sections of other families, by dimension"""
 RICH_SECTION_SPAN = 5
@@ -72,7 +74,8 @@ RICH_SECTION_SPAN = 5
 RICH_CURVE = 8
 """points on an edge curve or a wall of a rich structure: as many as on a channel's edges"""
 RICH_SEGMENT = 5
-"""inner control points of a segment in a rich structure, of a section that stands alone: they hold segments of one"""
+"""inner control points of a segment in a rich structure, of a section that stands alone: they hold segments of one.
+With twice the morphing airfoil takes 35 parameters, not 39, as near (design/matching_constants.md)."""
 
 
 @singledispatch

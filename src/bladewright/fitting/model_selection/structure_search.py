@@ -46,7 +46,8 @@ from bladewright.fitting.model_selection.structure import reshaped
 from bladewright.nurbs.basis import Reals
 
 REFUSED_MARGIN = 6.0
-"""factor of the margin of edge radii where a rich match that searches allow is refused when built."""
+"""factor of the margin of edge radii where a rich match that searches allow is refused when built. Half and twice
+change nothing measured (design/matching_constants.md)."""
 NOISE_REASON = "what is left is the cloud's own noise, {:.2g} mm: more control points would follow it"
 TRIED_PARAMETERS, MOST_TRIED = 100, 4
 """parameters of the structures of one size that are searched, in all, as predictions are linear; and structures at most

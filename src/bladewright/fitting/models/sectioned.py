@@ -52,9 +52,11 @@ SLOWEST_PACE = 0.003
 """smallest speed of a side's own parameter by s beside an edge, of its mean speed; at 0 the family refuses the side
 (design/matching_constants.md)"""
 SMALLEST_GAP = 1e-4
-"""smallest distance of the two sides from each other, in chords; at 0 the family refuses them"""
+"""smallest distance of the two sides from each other, in chords; at 0 the family refuses them. With half and twice
+Aachen's section ends 7.2e-4 of the chord off, not 6.8e-4 (design/matching_constants.md)."""
 STEEP_MARGIN = 0.01
-"""share of the steepest half thickness beside a round edge that the family allows which is kept free"""
+"""share of the steepest half thickness beside a round edge that the family allows which is kept free. Half and twice
+change nothing measured (design/matching_constants.md)."""
 MET_MARGIN = 0.01
 """how far before the end of an edge curve, continued, it must meet hub and shroud, of its parameter"""
 OPENING_MARGIN = 0.003
