@@ -6,7 +6,7 @@ import matching_clouds
 import numpy as np
 import pytest
 
-from bladewright.fitting.matching.blade_ends import blade_ends_of, edge_overhang_of
+from bladewright.fitting.matching.blade_ends import blade_ends_of, edge_overhang_of, outward_at_edges
 from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footpoints
 from bladewright.fitting.models.model import model_of
 from machines import example
@@ -174,6 +174,18 @@ def test_an_edge_that_sticks_out_of_its_cloud_stands_out_by_that_much(edge, path
     assert 0.3 * away < excess[edge] <= away
     again = footpoints_at(reach.points, longer, np.zeros(2, dtype=int), reach.u, reach.v)
     assert np.sum(again.miss[edge] * again.normals[edge]) < 0.0
+
+
+@pytest.mark.parametrize(("name", "edge"), [("vaned-diffuser", 1), ("wedge-diffuser", 1), (BLADE, 0), (BLADE, 1)])
+def test_out_of_a_blade_is_along_the_camber_whatever_its_edge(name, edge):
+    """A sharp or blunt edge past all points cost nothing while its side's normal was taken for the way out."""
+    sides = example(name).build().sides
+    v = np.linspace(0.1, 0.9, 5)
+    at, before = (np.mean([side(np.full(5, u), v) for side in sides], axis=0) for u in (float(edge), abs(edge - 0.4)))
+    way = at - before
+    out = outward_at_edges(sides, np.full(5, float(edge)), v)
+    np.testing.assert_allclose(np.sum(out**2, axis=1), 1.0)
+    assert np.all(np.sum(out * way, axis=1) > 0.8 * np.sqrt(np.sum(way**2, axis=1)))
 
 
 @pytest.mark.parametrize(("shown", "held"), [(1.0, True), (0.7, False)])

@@ -110,6 +110,8 @@ class Acceptance:
         if self._nothing_asked and not coarse:
             # what a match that is not found misses widens its bands
             yield from self._not_shown()
+        if not self.target.structured:
+            yield from (f"{each}: is it a whole blade? Give points there, or a start" for each in self._bare_stretches)
         yield from self._partly_shown()
 
     def notes(self) -> Iterator[str]:
@@ -132,7 +134,7 @@ class Acceptance:
             )
         if self._nothing_asked:
             yield from self._bare_parts()
-        else:
+        if self.target.structured:
             yield from self._bare_stretches
         if self._loose_ends:
             yield self._where_it_ends(self._loose_ends)
@@ -293,8 +295,6 @@ class Acceptance:
                 f"{100 * limits[worst] / chord:.2g} % of the chord are allowed: is it a whole blade? Give more points "
                 "there, a start, a number of parameters or a tolerance"
             )
-        for words in self._bare_stretches:
-            yield f"{words}: is it a whole blade? Give points there, a start, a number of parameters or a tolerance"
         allowed = max(GROSS_DEVIATION[0] * chord, one_point)
         unknown = {name: gap for name, gap in self._loose_ends.items() if gap > allowed}
         if unknown:

@@ -316,4 +316,19 @@ def edge_overhang_of(
     spacings = tree.query(cloud[around.ravel()], k=3)[0][:, -1]
     most = ALLOWED_SPACINGS_EXACT if exact else ALLOWED_SPACINGS
     allowed = np.where(shown, most * np.median(spacings.reshape(len(chosen), NEIGHBOURS), axis=1), np.inf)
-    return EdgeOverhang(points=nearest, u=u, v=v, allowed=allowed, normals=edges.normals)
+    return EdgeOverhang(points=nearest, u=u, v=v, allowed=allowed, normals=outward_at_edges(sides, u, v))
+
+
+def outward_at_edges(sides: Sequence[Side], u: Reals, v: Reals) -> Reals:
+    """Unit vectors (m, d) out of the blade at its edges, where u is 0 or 1.
+
+    Around a round edge the sides run opposite ways, and their normals point out; at a blunt or a sharp one the normals
+    are nearly opposite, and the sides run out.
+    """
+    out = np.zeros((len(u), np.real(sides[0].control_points).shape[-1]))
+    for number, side in enumerate(sides):
+        at = footpoints_at(np.zeros_like(out), sides, np.full(len(u), number), u, v)
+        along = np.asarray(side.derivative(u, v, 1, 0) if isinstance(side, Surface) else side.derivative(u))
+        size = np.sqrt(np.sum(along**2, axis=-1, keepdims=True))
+        out += at.normals + np.where(u > 0.5, 1.0, -1.0)[:, None] * along / np.where(size > 0.0, size, 1.0)
+    return np.asarray(out / np.sqrt(np.sum(out**2, axis=-1, keepdims=True)))
