@@ -70,9 +70,11 @@ move the radial diffuser from 3.9e-4 to 3.1e-4 of the chord, and from 25 paramet
 RICH_SECTION = {2: 12, 3: 8}
 """control points along the chord of a rich structure of sections of other families, by dimension"""
 RICH_SECTION_SPAN = 5
-"""control points along the span of their laws"""
+"""control points along the span of their laws. Half and twice change nothing measured
+(design/matching_constants.md)."""
 RICH_CURVE = 8
-"""points on an edge curve or a wall of a rich structure: as many as on a channel's edges"""
+"""points on an edge curve or a wall of a rich structure: as many as on a channel's edges. Half and twice change nothing
+measured (design/matching_constants.md)."""
 RICH_SEGMENT = 5
 """inner control points of a segment in a rich structure, of a section that stands alone: they hold segments of one.
 With twice the morphing airfoil takes 35 parameters, not 39, as near (design/matching_constants.md)."""

@@ -58,7 +58,8 @@ STEEP_MARGIN = 0.01
 """share of the steepest half thickness beside a round edge that the family allows which is kept free. Half and twice
 change nothing measured (design/matching_constants.md)."""
 MET_MARGIN = 0.01
-"""how far before the end of an edge curve, continued, it must meet hub and shroud, of its parameter"""
+"""how far before the end of an edge curve, continued, it must meet hub and shroud, of its parameter. Half and twice
+change nothing measured (design/matching_constants.md)."""
 OPENING_MARGIN = 0.003
 """smallest distance of an edge's opening from the largest one that the family allows
 (design/matching_constants.md)"""
