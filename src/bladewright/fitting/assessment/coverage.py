@@ -155,20 +155,28 @@ def bare_stretches(match: Match) -> list[tuple[float, str]]:
         first, last = ways[longest], ways[longest] + gaps[longest]
         if last - first <= max(BARE_SHARE * match.model.chord, BARE_GAPS * usual):
             continue
-        at = "" if sides[0].control_points.shape[-1] == 2 else f", v = {v:.2g}"
-        edges = {"leading edge": whole, "trailing edge": upper[-1]}
-        # of an edge at the end of the way its points show the other side
-        ends, middle = np.array([first, last]), 0.5 * (first + last) % whole
-        past = {name: min(place - first, last - place) for name, place in edges.items()}
-        edge = next((name for name, way in past.items() if way > AT_EDGE * (last - first)), "")
-        if edge and not match.problem.cloud_residuals.overhang.looks_at(EDGE_PARAMETERS[edge]):
-            continue
-        if not edge:
-            upward = ends - whole * (last > whole), upper
-            name, (along, own_way) = ("upper", upward) if middle < upper[-1] else ("lower", (whole - ends[::-1], lower))
-            edge = "{} side from u = {:.2f} to {:.2f}".format(name, *np.interp(along, own_way, u))
-        found.append((float(last - first), f"{edge}{at}"))
+        place = _place_between(first, last, upper, lower)
+        if place not in EDGE_PARAMETERS or match.problem.cloud_residuals.overhang.looks_at(EDGE_PARAMETERS[place]):
+            at = "" if sides[0].control_points.shape[-1] == 2 else f", v = {v:.2g}"
+            found.append((float(last - first), f"{place}{at}"))
     return found
+
+
+def _place_between(first: float, last: float, upper: Reals, lower: Reals) -> str:
+    """The edge, or the part of a side, between two ways around a section from its leading edge along the upper side.
+
+    The lengths of both sides up to even places in u are given. Points at an edge that is one end of the way show it.
+    """
+    whole, u = upper[-1] + lower[-1], np.linspace(0.0, 1.0, len(upper))
+    for edge, place in (("leading edge", whole), ("trailing edge", upper[-1])):
+        if min(place - first, last - place) > AT_EDGE * (last - first):
+            return edge
+    turn = whole if first + last >= 2.0 * whole else 0.0
+    if 0.5 * (first + last) - turn < upper[-1]:
+        name, ends = "upper", np.interp([first - turn, last - turn], upper, u)
+    else:
+        name, ends = "lower", np.interp([whole - last, whole - first], lower, u)
+    return "{} side from u = {:.2f} to {:.2f}".format(name, *ends)
 
 
 def shape_bands(match: Match, statistics: ParameterEstimates) -> ShapeBands:
