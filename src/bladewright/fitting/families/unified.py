@@ -46,9 +46,10 @@ def matched_unified(
         found, reason = selected_match(task, first, target, like=wanted, guessed=start is None)
         found, built, note = _buildable(task, found, structured=target.structured)
     except FitError as error:
-        if header.blade_count is None and isinstance(guessed, UnifiedBlade) and guessed.blade_count == 1:
-            raise FitError(f"{error}; the points go far around x: {AXES_HINT}") from error
-        raise
+        if start is not None or not isinstance(guessed, UnifiedBlade):
+            raise
+        around = "the points go far around x: " if header.blade_count is None and guessed.blade_count == 1 else ""
+        raise FitError(f"{error}; {around}{AXES_HINT}") from error
     return found, built, note or reason
 
 
