@@ -247,11 +247,12 @@ and twice change nothing measured (design/matching_constants.md)."""
 NEIGHBOURS = 6
 """points beside an edge whose distances from each other are looked at. Half and twice change nothing measured
 (design/matching_constants.md)."""
-ALLOWED_SPACINGS, ALLOWED_SPACINGS_EXACT = 1.5, 5.2
+ALLOWED_SPACINGS, ALLOWED_SPACINGS_EXACT = 1.5, {2: 15.0, 3: 5.2}
 """allowed overhang in spacings of the points beside the edge, and in a cloud that is exact (`ALLOWED_SPACINGS_EXACT`),
-where the true edge must cost nothing even by chance: of points at random, whose nearest others are s apart on average,
-none lies within 5.2 s of one of 36 places on edges in one cloud in 1,000 (a Poisson process). With 1.5 it had cost
-2.4e-3 of the chord on an impeller and on Rotor 67; with 15 a pump impeller stood 8 mm out (design/matching.md)."""
+by dimension, where the true edge must cost nothing even by chance: of points at random in space, whose nearest others
+are s apart on average, none lies within 5.2 s of one of 36 places on edges in one cloud in 1,000 (a Poisson process).
+With 1.5 it had cost 2.4e-3 of the chord on an impeller and on Rotor 67; with 15 a pump impeller stood 8 mm out. With
+5.2 a compressor's section is not found, which begins far out of its points (design/matching.md)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -315,7 +316,7 @@ def edge_overhang_of(
     tree = cKDTree(cloud)
     _, around = tree.query(nearest, k=NEIGHBOURS)
     spacings = tree.query(cloud[around.ravel()], k=3)[0][:, -1]
-    most = ALLOWED_SPACINGS_EXACT if exact else ALLOWED_SPACINGS
+    most = ALLOWED_SPACINGS_EXACT[points.shape[1]] if exact else ALLOWED_SPACINGS
     allowed = np.where(shown, most * np.median(spacings.reshape(len(chosen), NEIGHBOURS), axis=1), np.inf)
     return EdgeOverhang(points=nearest, u=u, v=v, allowed=allowed, normals=outward_at_edges(sides, u, v))
 
