@@ -169,7 +169,7 @@ class Acceptance:
 
     @cached_property
     def _bare_stretches(self) -> list[str]:
-        """Long ways around the blade without a point, each a sentence."""
+        """Long gaps between the points around the blade, each a sentence."""
         chord = self.match.model.chord
         return [
             f"no point shows the {place}: {self._length(way, 3)} without one, {100 * way / chord:.2g} % of the chord"

@@ -25,16 +25,16 @@ same. Half and twice change nothing measured (design/matching_constants.md)."""
 WIDTH_OVER_SPREAD = 4.0 / DEVIATION_OVER_MEDIAN
 """width of evenly scattered values over the deviation that the median of their distances from the middle tells"""
 PARTS = 5
-"""parts of the span, and of the chord, in each of which both sides are looked at. Half and twice change nothing
-measured (design/matching_constants.md)."""
+"""parts of the span, and of the chord, in each of which both sides are looked at. Half and twice change only how many
+long gaps are said (design/matching_constants.md)."""
 COVERED_SHARE = 0.5
-"""share of these parts that must have a point on the edge's arc; below it the edge is uncovered. Half and twice change
-nothing measured (design/matching_constants.md)."""
+"""share of these parts that must have a point on the edge's arc; below it the edge is uncovered. Half changes nothing,
+with twice a sharp edge is said to have no point (design/matching_constants.md)."""
 BARE_SHARE, BARE_GAPS = 0.1, 5.0
-"""way without a point, of the chord, from which a blade is not shown there if it is so many usual gaps: whole clouds
-have 0.025 at most, or 2.9 usual gaps, and a tenth of one side left out 0.12 and 13 (design/matching.md)"""
+"""gap between points around a section, of the chord, from which a blade is not shown there if it is so many usual ones:
+whole clouds have 0.025 at most, or 2.9 usual gaps, a tenth of one side left out 0.12 and 13 (design/matching.md)"""
 AT_EDGE = 0.01
-"""share of such a way within which an edge is at its end: half and twice change nothing measured
+"""share of such a gap within which an edge is at its end: half and twice change nothing measured
 (design/matching_constants.md)"""
 WAY_SAMPLES = 401
 """places along a side between which its length is taken as straight: half and twice change nothing measured
@@ -133,10 +133,10 @@ def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:
 
 
 def bare_stretches(match: Match) -> list[tuple[float, str]]:
-    """The longest way around the sections without a point [m], and where, in each part of the span with a long one.
+    """The largest gap between points around the sections [m], and where, in each part of the span with a long one.
 
-    It is compared with the chord, and with the gap between neighbours in which the middle of all ways lies, so that
-    neither few points nor rows of them seem to leave some out. A law of few control points goes on through such a gap
+    It is compared with the chord, and with the usual gap: half of a section's length lies in smaller ones, so that
+    neither few points nor rows of them seem to leave some out. A law of few control points goes on through a long gap
     as if it were known there.
     """
     feet, sides = match.state.footpoints.part(match.rows), match.state.shape.sides
@@ -163,9 +163,9 @@ def bare_stretches(match: Match) -> list[tuple[float, str]]:
 
 
 def _place_between(first: float, last: float, upper: Reals, lower: Reals) -> str:
-    """The edge, or the part of a side, between two ways around a section from its leading edge along the upper side.
+    """The edge, or the part of a side, in a gap between two lengths [m] from the leading edge along the upper side.
 
-    The lengths of both sides up to even places in u are given. Points at an edge that is one end of the way show it.
+    The lengths (n,) [m] of both sides up to even places in u are given. A point at an edge that ends the gap shows it.
     """
     whole, u = upper[-1] + lower[-1], np.linspace(0.0, 1.0, len(upper))
     for edge, place in (("leading edge", whole), ("trailing edge", upper[-1])):

@@ -249,10 +249,10 @@ NEIGHBOURS = 6
 (design/matching_constants.md)."""
 ALLOWED_SPACINGS, ALLOWED_SPACINGS_EXACT = 1.5, {2: 15.0, 3: 5.2}
 """allowed overhang in spacings of the points beside the edge, and in a cloud that is exact (`ALLOWED_SPACINGS_EXACT`),
-by dimension, where the true edge must cost nothing even by chance: of points at random in space, whose nearest others
-are s apart on average, none lies within 5.2 s of one of 36 places on edges in one cloud in 1,000 (a Poisson process).
-With 1.5 it had cost 2.4e-3 of the chord on an impeller and on Rotor 67; with 15 a pump impeller stood 8 mm out. With
-5.2 a compressor's section is not found, which begins far out of its points (design/matching.md)."""
+by dimension, where the true edge must cost nothing even by chance: of points at random in space one cloud in 1,000 has
+none within 3.4 spacings of one of 36 places on edges (a Poisson process), and rows are less even. With 1.5 it had cost
+2.4e-3 of the chord on an impeller and on Rotor 67; with 15 a pump impeller stood 8 mm out. With 5.2 a compressor's
+section is not found, which begins far out of its points (design/matching.md)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
