@@ -195,14 +195,14 @@ def aligned(machine, *, started=True):
     import matching_clouds as clouds
     import numpy as np
 
-    from bladewright.fitting.registration import found_axes, registration
+    from bladewright.fitting.registration import found_axes, registrations
 
     draw, design = np.random.default_rng(3), clouds.example(clouds.BROUGHT[machine])
     sides = design.build().sides
     true = clouds.scattered(sides, 5000, draw)
     moved = clouds.elsewhere(clouds.strewn(clouds.noisy(true, draw), draw) if started else true)
     since = time.process_time()
-    motion = registration(moved, design)[0] if started else found_axes(moved, arrangement="linear")[0]
+    motion = registrations(moved, design)[0][0] if started else found_axes(moved, arrangement="linear")[0]
     seconds = time.process_time() - since
     back = motion(clouds.elsewhere(true))
     extent = np.max(np.ptp(true, axis=0))

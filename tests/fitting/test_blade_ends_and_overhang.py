@@ -176,7 +176,9 @@ def test_an_edge_that_sticks_out_of_its_cloud_stands_out_by_that_much(edge, path
     assert np.sum(again.miss[edge] * again.normals[edge]) < 0.0
 
 
-@pytest.mark.parametrize(("name", "edge"), [("vaned-diffuser", 1), ("wedge-diffuser", 1), (BLADE, 0), (BLADE, 1)])
+@pytest.mark.parametrize(
+    ("name", "edge"), [("vaned-diffuser", 1), ("inlet-guide-vane", 1), ("wedge-diffuser", 1), (BLADE, 0), (BLADE, 1)]
+)
 def test_out_of_a_blade_is_along_the_camber_whatever_its_edge(name, edge):
     """A sharp or blunt edge past all points cost nothing while its side's normal was taken for the way out."""
     sides = example(name).build().sides
@@ -186,6 +188,19 @@ def test_out_of_a_blade_is_along_the_camber_whatever_its_edge(name, edge):
     out = outward_at_edges(sides, np.full(5, float(edge)), v)
     np.testing.assert_allclose(np.sum(out**2, axis=1), 1.0)
     assert np.all(np.sum(out * way, axis=1) > 0.8 * np.sqrt(np.sum(way**2, axis=1)))
+    along = np.real(sides[0].derivative(np.full(5, float(edge)), v, 0, 1))
+    assert np.max(np.abs(np.sum(out * along, axis=1))) < 1e-12 * np.max(np.abs(along))
+
+
+def test_a_true_oblique_edge_costs_nothing_beside_a_dense_row_at_its_end():
+    """The nearest point to a place on an edge may be one of the end's row, far along the edge, which is no overhang."""
+    built = example("inlet-guide-vane").build()
+    random = np.random.default_rng(1)
+    u = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 100))) / 2.0
+    points = [side(random.random(50), random.random(50)) for side in built.sides]
+    points = np.concatenate([*points, *(side(u, np.full(100, v)) for side in built.sides for v in (0.0, 1.0))])
+    reach = edge_overhang_of(points, built.sides, np.ones(len(points), dtype=bool), exact=True)
+    assert np.max(reach.excess(reach.edges(built.sides))) < 0.0
 
 
 @pytest.mark.parametrize(("shown", "held"), [(1.0, True), (0.7, False)])

@@ -34,13 +34,15 @@ from bladewright.fitting.placing import (
     Finishing,
     Matched,
     PlacedTask,
+    Ways,
     nearest_of,
+    placed_nearest,
     realigned,
     shown_of,
     turned_with,
     without_finishing,
 )
-from bladewright.fitting.registration import axis_motion, composed, found_axes, registration
+from bladewright.fitting.registration import axis_motion, composed, found_axes, registrations
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import choice
 from bladewright.section.unified import UnifiedSection
@@ -128,7 +130,7 @@ def fit(
     tell: Progress = progress or (lambda _: None)
     if align:
         tell("axes")
-    motion, more = _motion_of(points, start, axis, header, align=align, given=given)
+    ways = _ways_of(points, start, axis, header, align=align, given=given)
     if align and start is None:
         header = replace(header, arrangement="linear")
 
@@ -151,7 +153,7 @@ def fit(
 
     turns = list[PlacedTask]()
     try:
-        turns.append(place(motion, start, more))
+        turns.append(placed_nearest(ways, start, place))
         found, built, reason = matched(turns[0])
         if align and start is not None:
             found, built, reason = realigned(turns, (found, built, reason), place, matched)
@@ -173,7 +175,7 @@ def fit(
     return _reported(found, built, here, target, notes, finishing)
 
 
-def _motion_of(
+def _ways_of(
     points: Reals,
     start: Design | None,
     axis: str | Sequence[float] | None,
@@ -181,15 +183,16 @@ def _motion_of(
     *,
     align: bool,
     given: bool,
-) -> tuple[Motion | None, tuple[str, ...]]:
-    """The motion into the machine's axes, and notes; without a given design a cascade's span lies along z after it."""
+) -> Ways:
+    """The motions into the machine's axes, and notes; without a given design a cascade's span lies along z after it."""
     if align:
-        return found_axes(points, arrangement=header.arrangement) if start is None else registration(points, start)
+        found = [found_axes(points, arrangement=header.arrangement)] if start is None else registrations(points, start)
+        return [*found]
     motion = None if axis is None else axis_motion(axis, points.shape[1])
     cascade = header.arrangement == "linear" and points.shape[1] == 3 and not given
     if cascade and spans_along_y(points if motion is None else motion(points)):
-        return UPRIGHT if motion is None else composed(UPRIGHT, motion), (UPRIGHT_NOTE,)
-    return motion, ()
+        return [(UPRIGHT if motion is None else composed(UPRIGHT, motion), (UPRIGHT_NOTE,))]
+    return [(motion, ())]
 
 
 def named_family(family: str, dimension: int, given: Design | None = None) -> FitFamily | None:

@@ -11,6 +11,7 @@ Pereyra 1973, Kaufman 1975), and a match follows each.
 """
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -26,7 +27,16 @@ from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.clouds.walls import Walls
 from bladewright.fitting.free_parameters import EDGES, WALLS, FreeParameters
 from bladewright.fitting.matching.noise import EXACT
-from bladewright.fitting.matching.search import Match, Task, about_x, has_systematic_misfit
+from bladewright.fitting.matching.search import (
+    QUICK_ROUNDS,
+    ROUGH_REDUCTION,
+    Match,
+    Task,
+    about_x,
+    has_systematic_misfit,
+    searched,
+)
+from bladewright.fitting.model_selection.selection import QUICK_POINTS
 from bladewright.fitting.registration import (
     OTHER_BLADE_NOTE,
     WEAKEST_FREEDOM,
@@ -166,6 +176,26 @@ def turned_with(here: PlacedTask, match: Match) -> PlacedTask:
     )
 
 
+Ways = list[tuple[Motion | None, tuple[str, ...]]]
+"""motions into the machine's axes, the nearest first, and notes on each"""
+Place = Callable[[Motion | None, Design | None, tuple[str, ...]], PlacedTask]
+"""what is sought after a motion, from a start, with notes on the motion"""
+
+
+def placed_nearest(ways: Ways, start: Design | None, place: Place) -> PlacedTask:
+    """What is sought after the motion from which a short search of the start's structure comes nearest."""
+    found = list[tuple[float, PlacedTask]]()
+    if start is not None and len(ways) > 1:
+        for motion, notes in ways:
+            with suppress(FitError):
+                here = place(motion, start, notes)
+                few = here.shown.thinned(QUICK_POINTS)
+                match = searched(few, start, rounds=QUICK_ROUNDS, min_reduction=ROUGH_REDUCTION)
+                found.append((match.mean_distance, here))
+    motion, notes = ways[0]
+    return min(found, key=lambda each: each[0])[1] if found else place(motion, start, notes)
+
+
 Matched = tuple[Match, Any, str]
 """a match, what its design builds, and why it ends where no target is met"""
 
@@ -185,7 +215,7 @@ def shown_of(
 def realigned(
     turns: list[PlacedTask],
     found: Matched,
-    place: Callable[[Motion, Design, tuple[str, ...]], PlacedTask],
+    place: Place,
     match: Callable[[PlacedTask], Matched],
 ) -> Matched:
     """The nearest of matches that take turns with steps of the motion.

@@ -2,13 +2,13 @@
 
 Onto a blade or section it is found by iterative closest points. The starts are the turns of a cube, or a square, that
 lay the cloud's principal axes on the blade's. Each is followed with the nearest of many samples of the blade, first
-point to point (Besl and McKay 1992), then point to plane (Chen and Medioni 1992); the best are followed with true
-footpoints. Every step is one of Gauss and Newton with Tukey's weights (Beaton and Tukey 1974), whose width shrinks to
-what the noise needs (graduated non-convexity, Blake and Zisserman 1987): the few points at the ends, which alone hold a
-prismatic blade along its span, take part before they could be taken for outliers.
+point to point (Besl and McKay 1992), then point to plane (Chen and Medioni 1992); the best, and others about as near,
+are followed with true footpoints. Every step is one of Gauss and Newton with Tukey's weights (Beaton and Tukey 1974),
+whose width shrinks to what the noise needs (graduated non-convexity, Blake and Zisserman 1987): the few points at the
+ends, which alone hold a prismatic blade along its span, take part before they could be taken for outliers.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,13 +37,19 @@ the motion has six unknowns, and of 3000 points its noise is a fiftieth of their
 FIRST_WIDTH, SHRINKING = 0.05, 4.0
 """first width of the weights, of the blade's extent, and the factor by which it shrinks at most in a step: at once, a
 prism with outliers is found nine times as far off along its span (design/matching_constants.md)"""
-LEAST_WIDTH, LAST_STEP = 1e-8, 1e-12
-"""least width of the weights, to which footpoints are exact, and last step, which is rounding, of the blade's extent:
-half and twice change nothing measured (design/matching_constants.md)"""
+LEAST_WIDTH, LAST_STEP = 1e-8, 1e-4
+"""least width of the weights, to which footpoints are exact, of the blade's extent; and last step, of the width that
+the noise needs: half and twice change nothing measured (design/matching_constants.md)"""
+MOST_STEPS = 60
+"""steps with true footpoints at most: it bounds the time where a blade of another shape does not settle"""
 WEAKEST_FREEDOM, LARGEST_DEVIATION = 1e-5, 0.01
 """singular value, of the largest, below which the points do not determine a degree of freedom, and standard deviation,
 of the blade's extent, above which their noise does not let them: half and twice change nothing measured
 (design/matching_constants.md)"""
+AMBIGUOUS = 2.0
+"""ratio of the mean distances of two motions to closest samples up to which a blade that its own shape is off tells
+neither from the other: of six designs shaken by 3 % a propeller's turned over is nearer than its own, by 0.79, and a
+compressor stator's farther, by 1.37 (design/matching.md)."""
 OTHER_BLADE, LEAST_SHARE = 5e-3, 0.7
 """distance, of the chord, within which points are of this blade: as far as a match may be off where no tolerance is
 asked; and share of the points that must be: half and twice change nothing measured (design/matching_constants.md)"""
@@ -64,9 +70,10 @@ Contact = tuple[Reals, NDArray[np.intp], Reals]
 which they are held there, and these, unit vectors (m, d)"""
 
 
-def registration(points: Reals, design: Design) -> tuple[Motion, tuple[str, ...]]:
-    """The motion of points (n, d) [m] that lie anywhere onto what a design builds, found without a guess, and notes.
+def registrations(points: Reals, design: Design) -> list[tuple[Motion, tuple[str, ...]]]:
+    """The motions of points (n, d) [m] that lie anywhere onto what a design builds, found without a guess, and notes.
 
+    The nearest comes first; others follow that are about as near where the shape is, as of a flat blade turned over.
     Raises FitError where the points do not have the dimension of the design, or are too few.
     """
     built = design.build()
@@ -91,19 +98,30 @@ def registration(points: Reals, design: Design) -> tuple[Motion, tuple[str, ...]
         rows = np.concatenate([np.arange(len(moved)), past])
         return found.miss, rows, np.concatenate([found.normals, found.beyond[past]])
 
-    tried = (_rough(few, samples, normals, start) for start in _starts(few, samples))
-    _, motion = min(tried, key=lambda each: each[0])
     some = cloud[random_subset(len(cloud), DECIDING_POINTS)]
+    tried = sorted((_rough(few, samples, normals, start) for start in _starts(few, samples)), key=lambda each: each[0])
+    apart = list[Motion]()
+    for off, motion in tried:
+        same = (np.max(_lengths(motion(few) - other(few))) < FIRST_WIDTH * extent for other in apart)
+        if off <= AMBIGUOUS * tried[0][0] and not any(same):
+            apart.append(motion)
+    found = [_followed(some, motion, touching, extent) for motion in apart]
+    chord = float(np.real(built.chord))
+    return [(motion, _notes(motion(some), touching(motion(some)), extent, chord)) for motion in found]
+
+
+def _followed(points: Reals, motion: Motion, touching: Callable[[Reals], Contact], extent: float) -> Motion:
+    """The motion that true footpoints of points (n, d) lead to, with ever narrower weights."""
     width = FIRST_WIDTH * extent
-    for _ in range(60):
-        moved = motion(some)
+    for _ in range(MOST_STEPS):
+        moved = motion(points)
         contact = touching(moved)
         needed = max(_noise_width(contact), LEAST_WIDTH * extent)
         motion = composed(_step(moved, contact, width, extent), motion)
-        if width <= needed and np.max(np.abs(motion(some) - moved)) < LAST_STEP * extent:
+        if width <= needed and np.max(np.abs(motion(points) - moved)) < LAST_STEP * needed:
             break
         width = max(needed, width / SHRINKING)
-    return motion, _notes(motion(some), touching(motion(some)), extent, float(np.real(built.chord)))
+    return motion
 
 
 def _samples(sides: tuple[Side, Side]) -> tuple[Reals, Reals]:
@@ -144,8 +162,11 @@ def _rough(points: Reals, samples: Reals, normals: Reals, motion: Motion) -> tup
         return moved - samples[index], np.repeat(every, dimension), np.tile(np.eye(dimension), (len(points), 1))
 
     for planes, steps in ((False, 6), (True, 24)):
+        # tangent planes turn by about so much from sample to sample, and hold a prism along its span by no more
+        weakest = spacing / extent if planes else WEAKEST_FREEDOM
         for _ in range(steps):
-            motion = composed(_step(motion(points), contact(motion(points), planes=planes), 0.0, extent), motion)
+            moved = motion(points)
+            motion = composed(_step(moved, contact(moved, planes=planes), 0.0, extent, weakest), motion)
     miss, _, directions = contact(motion(points), planes=True)
     distances = _lengths(miss)
     # between samples only the distance from the tangent plane says how far a point is off
@@ -170,10 +191,10 @@ def _equations(moved: Reals, contact: Contact, width: float, extent: float) -> t
     return np.einsum("md,mdk->mk", directions, rates) * root[:, None], -np.sum(directions * miss[rows], axis=1) * root
 
 
-def _step(moved: Reals, contact: Contact, width: float, extent: float) -> Motion:
+def _step(moved: Reals, contact: Contact, width: float, extent: float, weakest: float = WEAKEST_FREEDOM) -> Motion:
     """The step of Gauss and Newton, in the degrees of freedom that the points determine."""
     rows, right = _equations(moved, contact, width, extent)
-    change = motion_scale(moved.shape[1], extent) * np.linalg.lstsq(rows, right, rcond=WEAKEST_FREEDOM)[0]
+    change = motion_scale(moved.shape[1], extent) * np.linalg.lstsq(rows, right, rcond=weakest)[0]
     return motion_by(change, np.mean(moved, axis=0))
 
 

@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 from bladewright.blade.exact.exact_blade import ExactBlade
 from bladewright.derivatives.complex_step import STEP
 from bladewright.fitting.clouds.thinning import random_subset
-from bladewright.fitting.matching.footpoints import EDGE_PARAMETERS, Footpoints, Side, footpoints_at
+from bladewright.fitting.matching.footpoints import EDGE_PARAMETERS, Footpoints, Side, footpoints_at, unit_or_zero
 from bladewright.fitting.models.model import ModelShape
 from bladewright.numerics.robust import median_deviation
 from bladewright.nurbs.basis import Reals
@@ -330,7 +330,16 @@ def outward_at_edges(sides: Sequence[Side], u: Reals, v: Reals) -> Reals:
     out = np.zeros((len(u), np.real(sides[0].control_points).shape[-1]))
     for number, side in enumerate(sides):
         at = footpoints_at(np.zeros_like(out), sides, np.full(len(u), number), u, v)
-        along = np.asarray(side.derivative(u, v, 1, 0) if isinstance(side, Surface) else side.derivative(u))
-        size = np.sqrt(np.sum(along**2, axis=-1, keepdims=True))
-        out += at.normals + np.where(u > 0.5, 1.0, -1.0)[:, None] * along / np.where(size > 0.0, size, 1.0)
-    return np.asarray(out / np.sqrt(np.sum(out**2, axis=-1, keepdims=True)))
+        out += at.normals + np.where(u > 0.5, 1.0, -1.0)[:, None] * unit_or_zero(_slopes(side, u, v, 0))
+    if isinstance(sides[0], Surface):
+        # across the edge, as the points beside an oblique one may lie far along it
+        edge = unit_or_zero(_slopes(sides[0], u, v, 1))
+        out -= np.sum(out * edge, axis=-1, keepdims=True) * edge
+    return unit_or_zero(out)
+
+
+def _slopes(side: Side, u: Reals, v: Reals, direction: int) -> Reals:
+    """Derivatives (m, d) of places on a side by u (0) or v (1)."""
+    if isinstance(side, Surface):
+        return np.asarray(side.derivative(u, v, 1 - direction, direction))
+    return np.asarray(side.derivative(u))

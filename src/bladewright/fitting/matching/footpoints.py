@@ -139,17 +139,18 @@ def footpoints_at(points: Reals, sides: Sequence[Side], side: NDArray[np.intp], 
         if isinstance(shape, Curve):
             at[rows] = shape(u[rows])
             along = np.asarray(shape.derivative(u[rows]))
-            normals[rows] = sign * _unit(np.stack([-along[:, 1], along[:, 0]], axis=-1))
+            normals[rows] = sign * unit_or_zero(np.stack([-along[:, 1], along[:, 0]], axis=-1))
             continue
         at[rows] = shape(u[rows], v[rows])
         along, across = (np.asarray(shape.derivative(u[rows], v[rows], *order)) for order in ((1, 0), (0, 1)))
-        normals[rows] = sign * _unit(np.cross(across, along))
-        out = sign * _unit(np.cross(along, normals[rows]))
+        normals[rows] = sign * unit_or_zero(np.cross(across, along))
+        out = sign * unit_or_zero(np.cross(along, normals[rows]))
         low, high = shape.domain_v
         beyond[rows] = out * ((v[rows] >= high).astype(float) - (v[rows] <= low))[:, None]
     return Footpoints(side=side, u=u, v=v, points=at, normals=normals, beyond=beyond, miss=points - at)
 
 
-def _unit(vectors: Reals) -> Reals:
+def unit_or_zero(vectors: Reals) -> Reals:
+    """Vectors (..., d) divided by their length; zero ones stay."""
     size = np.sqrt(np.sum(vectors**2, axis=-1, keepdims=True))
     return np.asarray(vectors / np.where(size > 0.0, size, 1.0))
