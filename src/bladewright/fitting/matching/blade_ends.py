@@ -19,6 +19,9 @@ from bladewright.nurbs.surface import Surface
 ROW_BAND = 0.015
 """distance from an end, in v, within which a point may belong to the row that shows it: half and twice change nothing
 measured (design/matching_constants.md)."""
+ROW_PARTS, ROW_SHARE = 20, 0.25
+"""parts of the chord in which the outermost points are looked for, and share of them that must have some at the end: a
+cloud of a part of the span has none (`ROW_SHARE`)"""
 FACE_BAND, FACE_DEPTH, FACE_NEARER_WALL = 0.1, 5.0, 0.3
 """a point of an end face has its footpoint within this distance of the end, in v, lies `FACE_DEPTH` usual distances
 inside the sides, and is nearer to the wall than to the sides by the ratio `FACE_NEARER_WALL`
@@ -168,7 +171,7 @@ def blade_ends_of(
         # beside an edge that is not yet found, points lie a little inside too
         if np.max(-footpoints.heights[face], initial=0.0) > DEEPEST_FACE_POINT * _half_thickness(shape, end):
             on_end_face[face] = True
-        row = rows & (np.abs(footpoints.v - end) < ROW_BAND) & ~on_end_face
+        row = _outermost(footpoints, rows & ~on_end_face, end)
         chosen = np.flatnonzero(row | (on_end_face & (np.abs(footpoints.v - end) < FACE_BAND)))
         if len(chosen) < FEWEST_ROW_POINTS:
             continue
@@ -184,6 +187,19 @@ def blade_ends_of(
         walls[name] = _wall_beside(name, np.concatenate(own), exact)
     near = np.flatnonzero(((footpoints.v < PAST_END_BAND) | (footpoints.v > 1.0 - PAST_END_BAND)) & ~on_end_face)
     return BladeEnds(walls=walls, on_end_face=on_end_face, near=near)
+
+
+def _outermost(footpoints: Footpoints, rows: NDArray[np.bool_], end: float) -> NDArray[np.bool_]:
+    """Which of n points, of those in `rows` (n,), may belong to the row at an end.
+
+    Where some parts of the chord show the end, they are those beside the outermost points of each part: a corner that has
+    slid past its points is far from its row.
+    """
+    away, part = np.abs(footpoints.v - end), np.minimum((ROW_PARTS * footpoints.u).astype(np.intp), ROW_PARTS - 1)
+    least = np.full(ROW_PARTS, np.inf)
+    np.minimum.at(least, part[rows], away[rows])
+    slid = np.where(np.quantile(least, ROW_SHARE) < ROW_BAND, least, 0.0)[part]
+    return rows & (away < np.where(slid < FACE_BAND, slid, 0.0) + ROW_BAND)
 
 
 def _nearer_wall(places: Reals, exact: ExactBlade) -> str:
