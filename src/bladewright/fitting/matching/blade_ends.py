@@ -192,8 +192,8 @@ def blade_ends_of(
 def _outermost(footpoints: Footpoints, rows: NDArray[np.bool_], end: float) -> NDArray[np.bool_]:
     """Which of n points, of those in `rows` (n,), may belong to the row at an end.
 
-    Where some parts of the chord show the end, they are those beside the outermost points of each part: a corner that has
-    slid past its points is far from its row.
+    Where some parts of the chord show the end, they are those beside the outermost points of each part: a corner that
+    has slid past its points is far from its row.
     """
     away, part = np.abs(footpoints.v - end), np.minimum((ROW_PARTS * footpoints.u).astype(np.intp), ROW_PARTS - 1)
     least = np.full(ROW_PARTS, np.inf)
