@@ -82,6 +82,18 @@ def test_a_long_way_without_a_point_is_told_with_its_place(name, upper, lower, p
     assert all(way > 0.1 * match.model.chord for way, _ in found)
 
 
+def test_rows_of_points_across_the_lines_of_a_blade_leave_no_part_out():
+    """Near the leading edge the row of a fifth of the span is in the next one: the edge between them is shown."""
+    design = DESIGNS["aachen-stator"]
+    u = np.linspace(0.0, 1.0, 150)
+    rows = [at + np.where(u < 0.2, 0.01, 0.0) for at in np.arange(0.195, 0.99, 0.2)]
+    points = np.concatenate([side(u, v) for side in design.build().sides for v in rows])
+    task = Task(
+        points=points, weights=np.ones(len(points)), free=free_parameters_of(None, None, started=True), bounds={}
+    )
+    assert not bare_stretches(searched(task, design, rounds=0))
+
+
 def test_a_side_that_is_not_shown_does_not_pass_where_a_law_goes_on_through_it():
     """The laws found here are the true section's, and said to be known to nothing."""
     sections = example("vki-ls89").build().sections[0].curves

@@ -33,6 +33,9 @@ with twice a sharp edge is said to have no point (design/matching_constants.md).
 BARE_SHARE, BARE_GAPS = 0.1, 5.0
 """gap between points around a section, of the chord, from which a blade is not shown there if it is so many usual ones:
 whole clouds have 0.025 at most, or 2.9 usual gaps, a tenth of one side left out 0.12 and 13 (design/matching.md)"""
+FREE_GAP = 0.1
+"""share of such a gap within which no point of other parts of the span may lie beside its middle, as rows of points run
+across the blade's lines: of APU's rows 0.036 at most, 0.18 where its corner stood out (design/matching.md)"""
 AT_EDGE = 0.01
 """share of such a gap within which an edge is at its end: half and twice change nothing measured
 (design/matching_constants.md)"""
@@ -156,9 +159,16 @@ def bare_stretches(match: Match) -> list[tuple[float, str]]:
         if last - first <= max(BARE_SHARE * match.model.chord, BARE_GAPS * usual):
             continue
         place = _place_between(first, last, upper, lower)
+        middle = 0.5 * (first + last) % whole
+        side = int(middle > upper[-1])
+        at = np.interp(whole - middle if side else middle, (upper, lower)[side], u)
+        beside = feet.points if place in EDGE_PARAMETERS else feet.points[feet.side == side]
+        aside = beside - _places(sides, np.array([side]), np.array([at]), np.array([v]))
+        if np.min(np.sum(aside**2, axis=-1)) < (FREE_GAP * (last - first)) ** 2:
+            continue
         if place not in EDGE_PARAMETERS or match.problem.cloud_residuals.overhang.looks_at(EDGE_PARAMETERS[place]):
-            at = "" if sides[0].control_points.shape[-1] == 2 else f", v = {v:.2g}"
-            found.append((float(last - first), f"{place}{at}"))
+            where = "" if sides[0].control_points.shape[-1] == 2 else f", v = {v:.2g}"
+            found.append((float(last - first), f"{place}{where}"))
     return found
 
 
