@@ -93,15 +93,15 @@ def test_a_corner_that_has_slid_past_its_row_is_still_shown_by_it():
     """It was held by nothing, and slid on: a radial turbine's hub stood 2 mm out of its points at the leading edge."""
     design, model, there = shape(BLADE)
     edge = [design.channel.leading_edge[i] for i in (0, -1)]
-    slid = design.changed("channel.leading_edge[0].r", edge[0].r - 0.06 * (edge[1].r - edge[0].r))
+    slid = design.changed("channel.leading_edge[0].r", edge[0].r - 0.03 * (edge[1].r - edge[0].r))
     points = sides_cloud(BLADE, 300, rows=60)
     feet = nearest_footpoints(points, model.shape(slid).sides)
     found = blade_ends_of(points, feet, model.shape(slid), np.ones(len(points), dtype=bool))
     hub = found.walls["hub"]
     row = np.flatnonzero(np.abs(hub.distances(there.exact)) < 1e-6 * model.chord)
-    # of 120, of which 44 are within 1.5 % of the span
+    # of 120, some of them farther than 1.5 % of the span
     assert len(row) >= 100
-    assert np.max(feet.v[hub.rows[row]]) > 0.03
+    assert np.max(feet.v[hub.rows[row]]) > 0.015
 
 
 def test_without_points_at_the_ends_there_are_no_walls():

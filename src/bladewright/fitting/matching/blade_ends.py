@@ -19,9 +19,10 @@ from bladewright.nurbs.surface import Surface
 ROW_BAND = 0.015
 """distance from an end, in v, within which a point may belong to the row that shows it: half and twice change nothing
 measured (design/matching_constants.md)."""
-ROW_PARTS, ROW_SHARE = 20, 0.25
+ROW_PARTS, ROW_SHARE = 20, 0.5
 """parts of the chord in which the outermost points are looked for, and share of them that must have some at the end: a
-cloud of a part of the span has none (`ROW_SHARE`)"""
+cloud of a part of the span has none, and with half of the share an end that is wrong all along, of a start laid on its
+cloud, was drawn to the row before its own (`ROW_SHARE`) (design/matching.md)"""
 FACE_BAND, FACE_DEPTH, FACE_NEARER_WALL = 0.1, 5.0, 0.3
 """a point of an end face has its footpoint within this distance of the end, in v, lies `FACE_DEPTH` usual distances
 inside the sides, and is nearer to the wall than to the sides by the ratio `FACE_NEARER_WALL`
@@ -192,7 +193,7 @@ def blade_ends_of(
 def _outermost(footpoints: Footpoints, rows: NDArray[np.bool_], end: float) -> NDArray[np.bool_]:
     """Which of n points, of those in `rows` (n,), may belong to the row at an end.
 
-    Where some parts of the chord show the end, they are those beside the outermost points of each part: a corner that
+    Where most parts of the chord show the end, they are those beside the outermost points of each part: a corner that
     has slid past its points is far from its row.
     """
     away, part = np.abs(footpoints.v - end), np.minimum((ROW_PARTS * footpoints.u).astype(np.intp), ROW_PARTS - 1)
