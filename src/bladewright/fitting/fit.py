@@ -186,8 +186,7 @@ def _ways_of(
 ) -> Ways:
     """The motions into the machine's axes, and notes; without a given design a cascade's span lies along z after it."""
     if align:
-        found = [found_axes(points, arrangement=header.arrangement)] if start is None else registrations(points, start)
-        return [*found]
+        return [found_axes(points, arrangement=header.arrangement)] if start is None else registrations(points, start)
     motion = None if axis is None else axis_motion(axis, points.shape[1])
     cascade = header.arrangement == "linear" and points.shape[1] == 3 and not given
     if cascade and spans_along_y(points if motion is None else motion(points)):

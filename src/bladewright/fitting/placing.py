@@ -10,7 +10,7 @@ takes steps of Gauss and Newton on the residuals that no change of the shape tak
 Pereyra 1973, Kaufman 1975), and a match follows each.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
@@ -176,7 +176,7 @@ def turned_with(here: PlacedTask, match: Match) -> PlacedTask:
     )
 
 
-Ways = list[tuple[Motion | None, tuple[str, ...]]]
+Ways = Sequence[tuple[Motion | None, tuple[str, ...]]]
 """motions into the machine's axes, the nearest first, and notes on each"""
 Place = Callable[[Motion | None, Design | None, tuple[str, ...]], PlacedTask]
 """what is sought after a motion, from a start, with notes on the motion"""

@@ -39,7 +39,8 @@ FIRST_WIDTH, SHRINKING = 0.05, 4.0
 prism with outliers is found nine times as far off along its span (design/matching_constants.md)"""
 LEAST_WIDTH, LAST_STEP = 1e-8, 1e-4
 """least width of the weights, to which footpoints are exact, of the blade's extent; and last step, of the width that
-the noise needs: half and twice change nothing measured (design/matching_constants.md)"""
+the noise needs: half and twice lay four starts within 1.2e-6 of the extent of each other, of half a percent that they
+are off (design/matching_constants.md)"""
 MOST_STEPS = 60
 """steps with true footpoints at most: it bounds the time where a blade of another shape does not settle. Half lays one
 of four starts 1.4e-5 of the extent elsewhere, twice none (design/matching_constants.md)."""
