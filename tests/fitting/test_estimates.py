@@ -16,9 +16,13 @@ STATE = SimpleNamespace(footpoints=SimpleNamespace(u=PLACES[:, 0], side=np.zeros
 """footpoints in a row on one side"""
 
 
-def found(slopes, *, alike=1, low=-np.inf, high=np.inf, seed=1, deviation=1e-3):
-    """A match whose residuals are noise that so many neighbours share, and whose derivatives are given."""
+def found(slopes, *, alike=1, low=-np.inf, high=np.inf, seed=1, deviation=1e-3, residuals=None, edges=0):
+    """A match whose derivatives are given, and whose residuals, or they are noise that so many neighbours share.
+
+    The last of both are those of places on edges.
+    """
     rows = deviation * np.repeat(np.random.default_rng(seed).normal(size=len(slopes) // alike), alike)
+    rows = rows if residuals is None else np.array(residuals)
     problem = SimpleNamespace(
         scales=Scales(size=SIZE, low=np.full(COUNT, low), high=np.full(COUNT, high)),
         paths=tuple("abcde"),
@@ -29,6 +33,7 @@ def found(slopes, *, alike=1, low=-np.inf, high=np.inf, seed=1, deviation=1e-3):
             points=PLACES,
             precision=np.ones(POINTS),
             ends=SimpleNamespace(near=np.empty(0, dtype=int)),
+            overhang=SimpleNamespace(u=np.empty(edges)),
         ),
         values_of=lambda _: np.arange(1.0, COUNT + 1.0),
     )
@@ -55,6 +60,14 @@ def test_the_covariance_is_that_of_linear_least_squares(seed):
         assert each.identified
     assert statistics.rank == COUNT
     assert statistics.condition == pytest.approx(np.linalg.cond(slopes * SIZE))
+
+
+def test_a_limit_on_how_far_edges_stand_out_shows_nothing():
+    match, rows = found(slopes_of(0))
+    limited, _ = found(
+        np.concatenate([slopes_of(0), 10.0 * slopes_of(1)[:30]]), residuals=[*rows, *np.ones(30)], edges=30
+    )
+    np.testing.assert_array_equal(parameter_estimates(limited).covariance, parameter_estimates(match).covariance)
 
 
 def test_a_parameter_on_a_bound_is_known_and_the_others_are_as_if_it_were_given():

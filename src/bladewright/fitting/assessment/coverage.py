@@ -54,9 +54,9 @@ measured (design/matching_constants.md)."""
 SHARES = (0.9, 0.5, 0.1)
 """widths from which a face and an arc are fitted, of the half height of their points: half and twice change nothing
 measured (design/matching_constants.md)."""
-PLACES = {2: (41, 1), 3: (21, 11)}
-"""places along each side, closer at the edges, and along the span at which it is asked how well the shape is known, by
-dimension; they bound the time"""
+PLACES = {2: (41, 1), 3: (21, 21)}
+"""places along each side and along the span, closer at edges and ends, at which it is asked how well the shape is
+known, by dimension; they bound the time. They do not fall on evenly spaced rows of points"""
 CONFIDENCE = 0.95
 """probability with which bands and ends are as near as is said [-]. It is that of Neyman 1937."""
 NORMAL_95 = float(ndtri((1.0 + CONFIDENCE) / 2.0))
@@ -197,8 +197,8 @@ def shape_bands(match: Match, statistics: ParameterEstimates) -> ShapeBands:
     """
     dimension = match.problem.cloud_residuals.points.shape[1]
     along, across = PLACES[dimension]
-    places = [0, 1], (1.0 - np.cos(np.linspace(0.0, np.pi, along))) / 2.0, np.linspace(0.0, 1.0, across)
-    side, u, v = (each.ravel() for each in np.meshgrid(*places, indexing="ij"))
+    places = ((1.0 - np.cos(np.linspace(0.0, np.pi, count))) / 2.0 for count in (along, across))
+    side, u, v = (each.ravel() for each in np.meshgrid([0, 1], *places, indexing="ij"))
     at = footpoints_at(np.zeros((len(u), dimension)), match.state.shape.sides, side, u, v)
     slopes = match.model.along(match.state.shape, at, at.normals, match.problem.paths)
     variances = np.einsum("nk,nk->n", slopes @ statistics.covariance, slopes)

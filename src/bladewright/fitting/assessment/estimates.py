@@ -150,8 +150,10 @@ def _linearised(match: Match) -> tuple[Reals, Reals, float, float]:
     Then the variance of the residuals of independent points, in chords, and its degrees of freedom.
     """
     cloud, problem = match.problem.cloud_residuals, match.problem
-    rows, count = cloud.residuals(match.state), len(cloud.points)
-    slopes = cloud.slopes(match.state, problem.paths) * problem.scales.size
+    # how far edges may stand out is a limit on them, and no point that shows them
+    rows, slopes = cloud.residuals(match.state), cloud.slopes(match.state, problem.paths) * problem.scales.size
+    shown, count = slice(len(rows) - len(cloud.overhang.u)), len(cloud.points)
+    rows, slopes = rows[shown], slopes[shown]
     excess = np.ones(len(rows))
     taking = cloud.roots > 0.0
     excess[:count] = np.where(taking, cloud.roots**2 / np.where(cloud.precision > 0.0, cloud.precision, 1.0), 1.0)
