@@ -8,7 +8,14 @@ from scipy.spatial import cKDTree
 
 from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.designs import Point
-from bladewright.fitting.families.flow_path import CONTINUATIONS, WALL_COUNTS, WALL_DISTANCE, WALL_MARGIN, _wall
+from bladewright.fitting.families.flow_path import (
+    CONTINUATIONS,
+    WALL_COUNTS,
+    WALL_DISTANCE,
+    WALL_MARGIN,
+    _outward,
+    _wall,
+)
 from bladewright.fitting.families.laws import part_of_laws
 from bladewright.fitting.free_parameters import FreeParameters, gauge_parameters
 from bladewright.fitting.matching.blade_ends import WallPoints
@@ -62,8 +69,21 @@ def test_a_wall_has_as_few_points_as_follow_it(turn):
     ahead, along = rows[0] - line[0], line[0] - line[1]
     assert np.sqrt(np.sum(ahead**2)) == pytest.approx(CONTINUATIONS[0], rel=0.02)
     assert np.sqrt(np.sum((rows[-1] - line[-1]) ** 2)) == pytest.approx(CONTINUATIONS[1], rel=0.02)
-    assert abs(ahead[0] * along[1] - ahead[1] * along[0]) < 1e-9
+    # the direction of a parabola beside the end, of third order in its share of the turn
+    assert abs(np.arctan2(*ahead) - np.arctan2(*along)) < 3e-3
     assert np.sqrt(np.sum((rows[1] - line[0]) ** 2)) == pytest.approx(WALL_MARGIN, rel=0.02)
+
+
+def test_a_wall_whose_corner_is_a_hook_goes_on_as_it_does_before():
+    t = np.linspace(0.0, 1.0, 201)
+    line = np.stack([t, 0.5 + 0.1 * t**2], axis=-1)
+    hooked = line.copy()
+    hooked[-4:] += np.outer(np.arange(1.0, 5.0), [-4e-3, 4e-3])
+    (_, plain), (_, found) = _outward(line), _outward(hooked)
+    turned = np.arctan2(plain[1], plain[0]) - np.arctan2(found[1], found[0])
+    assert abs(turned) < np.radians(25.0)
+    last = hooked[-1] - hooked[-2]
+    assert abs(np.arctan2(last[1], last[0])) > np.radians(70.0)
 
 
 def test_feet_go_over_as_many_thin_patches_as_lie_on_their_way():
