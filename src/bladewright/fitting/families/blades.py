@@ -116,10 +116,7 @@ def _through_points(task: Task, match: Match, target: MatchTarget) -> tuple[Matc
     some = inliers_of(task, match, SEVERAL_POINTS)
     try:
         parts = [through_points(each, CONTOUR_POINTS) for each in _shapes_of(design.section)]
-        section = part_of_laws(parts)
-        if section is None:
-            return None
-        first = replace(design, section=section)
+        first = replace(design, section=part_of_laws(parts))
         found = searched(some, first, min_reduction=ROUGH_REDUCTION, settled=SETTLED_RICH, fading=True)
         return determined(some, found) if target.open else (found, "")
     except (DesignError, FitError):
@@ -221,9 +218,9 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
             break
         if any(frame.plane == each.plane and frame is not each for _, each in blades):
             continue
-        parts = _along_span(frame.shapes, chosen)
-        design = _blade_of(found, frame, kind.blade, part_of_laws(parts), like, header)
         try:
+            section = part_of_laws(_along_span(frame.shapes, chosen))
+            design = _blade_of(found, frame, kind.blade, section, like, header)
             blades.append((compared(few.turned(frame.turn), iter([design]))[0], frame))
         except FitError as error:
             refusal = error

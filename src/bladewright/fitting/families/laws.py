@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from bladewright.designs import Law
-from bladewright.errors import DesignError
+from bladewright.errors import DesignError, FitError
 from bladewright.fitting.models.sectioned import infeasibility
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import Span, law_basis, law_points, named_laws
@@ -29,9 +29,10 @@ def with_mean_laws(part: Any) -> Any:
 
 
 def part_of_laws(parts: Sequence[Any]) -> Any:
-    """One part of laws from those of sections; None where even constants leave sections no shape.
+    """One part of laws from those of sections.
 
-    Laws are constants where one, alone or together with those before it, leaves sections no shape.
+    Laws are constants where one, alone or together with those before it, leaves sections no shape. Raises FitError
+    where even constants do.
     """
     paths = parts[MIDDLE].parameters()
     whole = _with_shape(parts, dict.fromkeys(paths, LAW_COUNT))
@@ -45,6 +46,8 @@ def part_of_laws(parts: Sequence[Any]) -> Any:
         wider = _with_shape(parts, more)
         if wider is not None:
             taken, found = more, wider
+    if found is None:
+        raise FitError("no laws along the span leave all sections a shape")
     return found
 
 
