@@ -11,6 +11,7 @@ from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.blade.exact.cut_sectioned import ExactCutBlade, exact_blade_of_sections
 from bladewright.blade.exact.prescribed_edges import PrescribedEdges
 from bladewright.blade.exact.sectioned import ENDS, PLACING
+from bladewright.blade.exact.unified import SURVEY
 from bladewright.blade.flow_path.intersections import EXTENSION
 from bladewright.blade.flow_path.stream_surfaces import KEPT
 from bladewright.blade.native.blade import side_surface
@@ -35,6 +36,7 @@ from bladewright.nurbs.curve import Curve
 from bladewright.section.camber_angle import CamberAngle
 from bladewright.section.camber_angle_outline import STEEPEST
 from bladewright.section.checks import UNITS
+from bladewright.section.curvature_meanline import CurvatureMeanline
 from bladewright.section.laws import Span
 from bladewright.section.native import DEGREE, interpolated_along_u, side_knots_for
 from bladewright.section.outline import Edge, EdgeDerivatives
@@ -46,8 +48,8 @@ from bladewright.section.suction_pressure.part import SuctionPressure, edge_poin
 
 SINGLE_SECTION = Span(np.zeros(1))
 """the one place along the span of a section that stands alone"""
-FEASIBILITY_SPAN = Span(np.linspace(0.0, 1.0, 5))
-"""places along the span at which sections must stay feasible; each costs one more section a step"""
+FEASIBILITY_SPAN = Span(SURVEY)
+"""places along the span at which sections must stay feasible: those by which a blade is judged before it is built"""
 SLOWEST_PACE = 0.003
 """smallest speed of a side's own parameter by s beside an edge, of its mean speed; at 0 the family refuses the side
 (design/matching_constants.md)"""
@@ -205,6 +207,12 @@ def _(part: Segmented, span: Span) -> Array:
             rows.append(x[..., :-1] - x[..., 1:])
     found = concatenated(rows, axis=-1)
     return found.reshape(*found.shape[:-2], -1)
+
+
+@infeasibility.register
+def _(part: CurvatureMeanline, span: Span) -> Array:
+    part.thickness.at(span)
+    return np.zeros(0)
 
 
 @infeasibility.register
