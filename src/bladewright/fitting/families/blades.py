@@ -151,10 +151,10 @@ def _first_blade(task: Task, kind: FitFamily, like: Any, header: DesignHeader) -
     task.progress("first design of the family")
     try:
         return _first(task, model_of(closed).shape(closed), kind, like, header)
-    except FitError as refusal:
+    except (DesignError, FitError) as refusal:
         try:
             return _first(task, model_of(first).shape(first), kind, like, header)
-        except FitError:
+        except (DesignError, FitError):
             raise refusal from None
 
 
@@ -208,8 +208,8 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
             matches = _matched(kind, shapes[MIDDLE], beside, part)
             frame = _Frame(plane=plane, turn=turn, shapes=shapes)
             tried += [(match, frame) for match in matches]
-        except FitError as error:
-            refusal = error
+        except (DesignError, FitError) as error:
+            refusal = FitError(str(error))
     few, blades = task.thinned(QUICK_POINTS), list[tuple[Match, _Frame]]()
     off = misfits([match for match, _ in tried]) if tried else []
     for number in np.argsort(off, kind="stable"):
@@ -222,8 +222,8 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
             section = part_of_laws(_along_span(frame.shapes, chosen))
             design = _blade_of(found, frame, kind.blade, section, like, header)
             blades.append((compared(few.turned(frame.turn), iter([design]))[0], frame))
-        except FitError as error:
-            refusal = error
+        except (DesignError, FitError) as error:
+            refusal = FitError(str(error))
     if not blades:
         raise refusal
     best, frame = blades[_alike([match for match, _ in blades])[0]]
