@@ -140,11 +140,11 @@ def test_a_blade_that_is_measured_in_fewer_sections_than_its_laws_have_points_is
     [
         (np.zeros(20), 1),
         (np.array([0.0, 0.33, 0.66, 0.99]), 4),
-        (np.linspace(0.0, 1.0, 9), 6),
-        (np.linspace(0.0, 1.0, 21), 9),
+        (np.linspace(0.0, 1.0, 9), 7),
+        (np.linspace(0.0, 1.0, 21), 11),
     ],
 )
-def test_rows_along_the_span_show_so_many_control_points_of_a_cubic_law_with_a_knot_for_each_four(v, shown):
+def test_rows_along_the_span_show_so_many_control_points_of_a_cubic_law_with_a_knot_for_each_third(v, shown):
     assert rows_shown(np.repeat(v, 30)) == shown
 
 
