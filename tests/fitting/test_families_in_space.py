@@ -10,16 +10,18 @@ from scipy.spatial import cKDTree
 
 from bladewright.errors import FitError
 from bladewright.fitting import free_parameters
+from bladewright.fitting.assessment.acceptance import MatchTarget
 from bladewright.fitting.families import blades
-from bladewright.fitting.families.blades import _alike
+from bladewright.fitting.families.blades import _alike, matched_blade
 from bladewright.fitting.families.first_parts import through_points
 from bladewright.fitting.families.flow_path import ClosedChannel
-from bladewright.fitting.families.kinds import FAMILIES
+from bladewright.fitting.families.kinds import FAMILIES, DesignHeader
 from bladewright.fitting.families.laws import LAW_COUNT, part_along_span, part_of_laws, with_mean_laws
 from bladewright.fitting.families.section_shape import section_shape, unrolled
 from bladewright.fitting.families.sections import misfits
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import FreeParameters, gauge_parameters, sliding_coordinate
+from bladewright.fitting.initial_guess.blade import UPRIGHT
 from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footpoints
 from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.matching.search import Task
@@ -29,6 +31,7 @@ from bladewright.fitting.models.model import model_of
 from bladewright.section.laws import Span, law_points, named_laws
 from bladewright.section.profiles.naca4 import Naca4
 from bladewright.section.wedge_diffuser import WedgeDiffuser, WedgeDiffuserSection
+from machines import example
 from machines.sectioned import BLUNT, COMPRESSOR, DESIGNS, DIFFUSER
 
 VANE = replace(DIFFUSER, tolerance=1e-4)
@@ -232,3 +235,41 @@ def test_matches_are_compared_by_their_outliers_too_but_by_none_more_than_is_far
     clipped = np.sqrt((19.0 * np.array([1.0, 1.05]) ** 2 + 6.0**2) / 20.0)
     assert misfits(planted) == pytest.approx(clipped.tolist())
     assert _alike([alike, near, stood_in([2.4] * 20)]) == [0, 1]
+
+
+@pytest.mark.parametrize(("missed", "taken"), [(False, ["annular"]), (True, ["annular", "linear"])])
+def test_a_blade_that_is_missed_around_the_axis_is_sought_in_a_cascade(monkeypatch, missed, taken):
+    tried = []
+
+    def selected(task, _kind, _start, _like, header, _target):
+        arrangement = header.arrangement or "annular"
+        tried.append((arrangement, task.turn))
+        return task, SimpleNamespace(design=SimpleNamespace(arrangement=arrangement)), arrangement
+
+    monkeypatch.setattr(blades, "_selected", selected)
+    monkeypatch.setattr(blades, "_is_missed", lambda *_: missed)
+    monkeypatch.setattr(blades, "criterion", lambda match, _: match.design.arrangement == "annular")
+    points = example("vki-ls89").build().sides[0](*np.random.default_rng(2).random((2, 800)))[:, [0, 2, 1]]
+    task = Task(points=points, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
+    kind, header = FAMILIES["camber-angle"], DesignHeader(name="vane", length_unit="mm")
+    _, reason = matched_blade(task, kind, None, None, header, MatchTarget())
+    # its span lies along y, and is turned to z
+    assert tried == list(zip(taken, (0.0, UPRIGHT), strict=False))
+    assert reason == taken[-1]
+
+
+def test_a_given_arrangement_is_the_only_one_and_all_refusals_are_one(monkeypatch):
+    tried = []
+
+    def refused(_task, _kind, _start, _like, header, _target):
+        tried.append(header.arrangement)
+        raise FitError(f"refused as {header.arrangement}")
+
+    monkeypatch.setattr(blades, "_selected", refused)
+    task = Task(points=cloud(), weights=np.ones(len(cloud())), free=FreeParameters(), bounds={})
+    for arrangement, known in (("annular", ["annular"]), (None, [None, "linear"])):
+        tried.clear()
+        header = DesignHeader(name="vane", length_unit="mm", arrangement=arrangement)
+        with pytest.raises(FitError, match=f"refused as {known[0]}"):
+            matched_blade(task, FAMILIES["wedge-diffuser"], None, None, header, MatchTarget())
+        assert tried == known

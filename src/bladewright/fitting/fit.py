@@ -27,9 +27,9 @@ from bladewright.fitting.families.kinds import FAMILIES, DesignHeader, FitFamily
 from bladewright.fitting.families.sections import matched_section
 from bladewright.fitting.families.unified import matched_unified
 from bladewright.fitting.free_parameters import FreeParameters, free_parameters_of
-from bladewright.fitting.initial_guess.blade import spans_along_y
+from bladewright.fitting.initial_guess.blade import UPRIGHT, spans_along_y
 from bladewright.fitting.matching.noise import EXACT
-from bladewright.fitting.matching.search import Match, Progress, Task
+from bladewright.fitting.matching.search import Match, Progress, Task, about_x
 from bladewright.fitting.placing import (
     Finishing,
     Matched,
@@ -54,7 +54,7 @@ CASCADE_NOTE = (
     "stands around x needs the arrangement annular, one with its span along y the arrangement linear"
 )
 """note where a cloud without a start was taken for a blade of a linear cascade"""
-UPRIGHT = Motion(rotation=np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]), translation=np.zeros(3))
+TURN_UPRIGHT = Motion(rotation=about_x(UPRIGHT), translation=np.zeros(3))
 """the turn about x that brings y to z"""
 UPRIGHT_NOTE = (
     "the blade of the linear cascade has its span along y, and is turned about x so that it lies along z: "
@@ -190,7 +190,7 @@ def _ways_of(
     motion = None if axis is None else axis_motion(axis, points.shape[1])
     cascade = header.arrangement == "linear" and points.shape[1] == 3 and not given
     if cascade and spans_along_y(points if motion is None else motion(points)):
-        return [(UPRIGHT if motion is None else composed(UPRIGHT, motion), (UPRIGHT_NOTE,))]
+        return [(TURN_UPRIGHT if motion is None else composed(TURN_UPRIGHT, motion), (UPRIGHT_NOTE,))]
     return [(motion, ())]
 
 

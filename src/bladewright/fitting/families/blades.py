@@ -1,6 +1,6 @@
 """From points in space to a blade from sections of a family."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 from typing import Any
@@ -33,7 +33,7 @@ from bladewright.fitting.families.sections import (
     misfits,
 )
 from bladewright.fitting.free_parameters import EDGES, FreeParameters, gauge_parameters
-from bladewright.fitting.initial_guess.blade import first_blade
+from bladewright.fitting.initial_guess.blade import UPRIGHT, first_blade, spans_along_y
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.scales import check_bounds, part_range
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, can_be_built, searched
@@ -92,6 +92,44 @@ def matched_blade(
     own = start is None and like is None
     if own and isinstance(task.free, FreeParameters):
         task = replace(task, free=replace(task.free, walls=True))
+    tried, refusals = list[tuple[Task, Match, str]](), list[Exception]()
+    for turned, row in _arranged(task, header, own=own):
+        try:
+            tried.append(_selected(turned, kind, start, like, row, target))
+        except (DesignError, FitError) as error:
+            refusals.append(error)
+            continue
+        design: Any = tried[-1][1].design
+        if not _is_missed(tried[-1][1], target) or design.arrangement == "linear":
+            break
+    if not tried:
+        raise refusals[0]
+    task, found, reason = min(tried, key=lambda each: criterion(each[1], target))
+    if kind.has_contours and own and _is_missed(found, target) and target.parameters is None:
+        outlined = _through_points(task, found, target)
+        found, reason = min(filter(None, ((found, reason), outlined)), key=lambda each: criterion(each[0], target))
+    return found, "; ".join(filter(None, (reason, "" if own else WALLS_HELD_NOTE)))
+
+
+def _arranged(task: Task, header: DesignHeader, *, own: bool) -> Iterator[tuple[Task, DesignHeader]]:
+    """What is sought in the arrangements in which it may be: first as the points seem to show it, or as is given.
+
+    Where nothing is given, the blade of a cascade, with its span along z or y, may be taken for one around the axis.
+    """
+    yield task, header
+    if own and header.arrangement is None:
+        yield task.turned(UPRIGHT if spans_along_y(task.points) else 0.0), replace(header, arrangement="linear")
+
+
+def _is_missed(match: Match, target: MatchTarget) -> bool:
+    """Whether a match is not what is asked for, with a misfit that its neighbours share."""
+    return is_far(match, target, NEAR_EVERYWHERE) and match.noise_estimate.correlation > SHARED_VARIANCE
+
+
+def _selected(
+    task: Task, kind: FitFamily, start: Any, like: Any, header: DesignHeader, target: MatchTarget
+) -> tuple[Task, Match, str]:
+    """The match of one arrangement, what was sought with its points turned, and why it ends where no target is met."""
     first, structure = start, None if like is None else structure_of(like)
     if start is None:
         turn, first = _first_blade(task, kind, like, header)
@@ -99,12 +137,7 @@ def matched_blade(
     first = first if structure is None else reshaped(first, structure)
     first = task.free.applied(first) if isinstance(task.free, FreeParameters) else first
     check_bounds(first, task.free(first), task.bounds)
-    found, reason = selected_match(task, first, target, like=structure, guessed=start is None)
-    misfit = is_far(found, target, NEAR_EVERYWHERE) and found.noise_estimate.correlation > SHARED_VARIANCE
-    if kind.has_contours and own and misfit and target.parameters is None:
-        outlined = _through_points(task, found, target)
-        found, reason = min(filter(None, ((found, reason), outlined)), key=lambda each: criterion(each[0], target))
-    return found, "; ".join(filter(None, (reason, "" if own else WALLS_HELD_NOTE)))
+    return task, *selected_match(task, first, target, like=structure, guessed=start is None)
 
 
 def _through_points(task: Task, match: Match, target: MatchTarget) -> tuple[Match, str] | None:

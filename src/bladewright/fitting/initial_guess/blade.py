@@ -107,6 +107,8 @@ CLEARER_ROW, CLEAR_ROW = 0.5, 1e-3
 than `CLEAR_ROW` of the span. Rows of Aachen's stator with noise scatter by 1.7e-4 of the span about the axis, and by
 1.4e-3 on planes (design/matching.md)."""
 
+UPRIGHT = -0.5 * np.pi
+"""angle about x that brings y to z [rad]"""
 SPAN_POINTS = 600
 """points by which the span's axis is told; it bounds the time: half and twice change nothing
 (design/matching_constants.md)."""
