@@ -297,6 +297,7 @@ def _part(of, shown):
 VARIATIONS: dict[str, tuple[tuple[str, ...], Callable[[Truth], Case], str]] = {
     # name: machines, the case of one, and the words of the refusal that is right, or nothing
     "rows": ((*SPACE, "ls89"), lambda of: Case(points=rows(of.sides)), ""),
+    "sections": (SPACE, lambda of: Case(points=rows(of.sides, 9)), ""),
     "scattered": ((*SPACE, "ls89"), lambda of: Case(points=scattered(of.sides, 5000, of.draw)), ""),
     "noise": ((*SPACE, "ls89"), lambda of: Case(points=noisy(rows(of.sides), of.draw)), ""),
     "outliers": ((*SPACE, "ls89"), lambda of: Case(points=strewn(noisy(rows(of.sides), of.draw), of.draw)), ""),

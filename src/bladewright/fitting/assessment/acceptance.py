@@ -165,7 +165,7 @@ class Acceptance:
 
     @cached_property
     def _bands(self) -> ShapeBands:
-        return shape_bands(self.match, self.statistics)
+        return shape_bands(self.match)
 
     @cached_property
     def _bare_stretches(self) -> list[str]:

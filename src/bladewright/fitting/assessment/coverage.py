@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.special import fdtri, ndtri
 
-from bladewright.fitting.assessment.estimates import ParameterEstimates
+from bladewright.fitting.assessment.estimates import shape_covariance
 from bladewright.fitting.free_parameters import parameters_of_curve
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS
 from bladewright.fitting.matching.footpoints import EDGE_PARAMETERS, Side, footpoints_at
@@ -190,8 +190,8 @@ def _place_between(first: float, last: float, upper: Reals, lower: Reals) -> str
     return "{} side from u = {:.2f} to {:.2f}".format(name, *ends)
 
 
-def shape_bands(match: Match, statistics: ParameterEstimates) -> ShapeBands:
-    """How well the shape is known, by the derivatives of places by the free parameters, and these' covariance.
+def shape_bands(match: Match) -> ShapeBands:
+    """How well the shape is known, by the derivatives of places by its parameters, and these' covariance.
 
     Reference: Bates and Watts 1988, section 2.3.2 (inference bands for the expected response).
     """
@@ -200,8 +200,9 @@ def shape_bands(match: Match, statistics: ParameterEstimates) -> ShapeBands:
     places = ((1.0 - np.cos(np.linspace(0.0, np.pi, count))) / 2.0 for count in (along, across))
     side, u, v = (each.ravel() for each in np.meshgrid([0, 1], *places, indexing="ij"))
     at = footpoints_at(np.zeros((len(u), dimension)), match.state.shape.sides, side, u, v)
-    slopes = match.model.along(match.state.shape, at, at.normals, match.problem.paths)
-    variances = np.einsum("nk,nk->n", slopes @ statistics.covariance, slopes)
+    paths, covariance = shape_covariance(match)
+    slopes = match.model.along(match.state.shape, at, at.normals, paths)
+    variances = np.einsum("nk,nk->n", slopes @ covariance, slopes)
     return ShapeBands(side=side, u=u, v=v, half_widths=NORMAL_95 * np.sqrt(np.maximum(variances, 0.0)))
 
 

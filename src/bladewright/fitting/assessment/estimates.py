@@ -1,5 +1,6 @@
 """What a cloud says of each parameter: covariance, intervals, and what it does not determine."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,6 +9,7 @@ from scipy.special import stdtrit
 
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.matching.noise import neighbourhood_of
+from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.matching.search import Match
 from bladewright.nurbs.basis import Reals
 
@@ -103,6 +105,32 @@ def parameter_estimates(match: Match) -> ParameterEstimates:
     )
 
 
+def shape_covariance(match: Match) -> tuple[tuple[str, ...], Reals]:
+    """The free parameters and those that are held as the points do not determine them; their covariance (k, k).
+
+    In the units of the fields. A smooth design holds the latter where it has them, and each may be off by its own scale
+    there: between rows of points that moves the shape. Reference: Wahba 1983 (the prior of a smoothing spline as part
+    of what is not known).
+    """
+    problem, held = match.problem, tuple(sorted(match.held))
+    count, sizes = len(problem.paths), np.append(problem.scales.size, _size_of(match, held))
+    slopes, _, variance, _ = _linearised(match, held)
+    prior = np.eye(count + len(held))[count:]
+    # what a bound holds is known
+    inside = np.append(problem.scales.inside(problem.values_of(match.design)), np.ones(len(held), dtype=bool))
+    rows = np.concatenate([slopes / np.sqrt(variance), prior])[:, inside]
+    _, singular, turns = np.linalg.svd(rows, full_matrices=False)
+    known = singular > 1e-13 * singular[0]
+    covariance = np.zeros((len(inside), len(inside)))
+    covariance[np.ix_(inside, inside)] = (turns[known].T / singular[known] ** 2) @ turns[known]
+    return (*problem.paths, *held), covariance * np.outer(sizes, sizes)
+
+
+def _size_of(match: Match, paths: Sequence[str]) -> Reals:
+    """The scales (k,) of parameters."""
+    return scales_of(match.design, paths, match.model.chord).size if paths else np.empty(0)
+
+
 def independent_share(places: Reals, residuals: Reals) -> float:
     """Share of residuals (n,) at places (n, d) that count as independent: the effective sample size over n.
 
@@ -144,14 +172,16 @@ def undetermined_parameters(match: Match, margin: float) -> list[str]:
     return [path for place, path in enumerate(match.problem.paths) if place not in kept]
 
 
-def _linearised(match: Match) -> tuple[Reals, Reals, float, float]:
+def _linearised(match: Match, held: Sequence[str] = ()) -> tuple[Reals, Reals, float, float]:
     """Derivatives (m, k) of residuals by scaled parameters, and how much more these weigh than inverse variances (m,).
 
-    Then the variance of the residuals of independent points, in chords, and its degrees of freedom.
+    The parameters are the free ones, and after them some that are `held`. Then the variance of the residuals of
+    independent points, in chords, and its degrees of freedom.
     """
     cloud, problem = match.problem.cloud_residuals, match.problem
     # how far edges may stand out is a limit on them, and no point that shows them
-    rows, slopes = cloud.residuals(match.state), cloud.slopes(match.state, problem.paths) * problem.scales.size
+    rows, slopes = cloud.residuals(match.state), cloud.slopes(match.state, (*problem.paths, *held))
+    slopes = slopes * np.append(problem.scales.size, _size_of(match, held))
     shown, count = slice(len(rows) - len(cloud.overhang.u)), len(cloud.points)
     rows, slopes = rows[shown], slopes[shown]
     excess = np.ones(len(rows))
