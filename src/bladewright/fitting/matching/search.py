@@ -117,10 +117,13 @@ class Task:
             return self
         return replace(self, points=self.points @ about_x(angle).T, turn=self.turn + angle)
 
+    def without(self, paths: Collection[str]) -> "Task":
+        """The same task with some parameters that do not change."""
+        return replace(self, free=lambda design: tuple(path for path in self.free(design) if path not in paths))
+
     def holding(self, held: Collection[str]) -> "Task":
         """The same task with some parameters held that the points do not determine."""
-        names = self.held | {*held}
-        return replace(self, held=names, free=lambda design: tuple(p for p in self.free(design) if p not in names))
+        return replace(self.without(held), held=self.held | {*held})
 
     def part(self, rows: NDArray[np.intp]) -> "Task":
         """The same task with some of the points (m,)."""

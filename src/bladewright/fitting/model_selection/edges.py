@@ -39,7 +39,7 @@ def with_sharp_edges(task: Task, match: Match) -> tuple[Task, Match, str]:
     for name, (radius, ends) in EDGES.items() if task.dimension == 2 else ():
         if radius not in match.problem.paths or not all(_pointed(side, ends) for side in match.state.shape.sides):
             continue
-        held = task.holding((radius,))
+        held = task.without((radius,))
         try:
             match = searched(
                 task, match.design, noise=match.rms, rounds=QUICK_ROUNDS + 1, min_reduction=ROUGH_REDUCTION
