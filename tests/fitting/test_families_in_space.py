@@ -244,10 +244,13 @@ def test_a_blade_that_is_missed_around_the_axis_is_sought_in_a_cascade(monkeypat
     def selected(task, _kind, _start, _like, header, _target):
         arrangement = header.arrangement or "annular"
         tried.append((arrangement, task.turn))
-        return task, SimpleNamespace(design=SimpleNamespace(arrangement=arrangement)), arrangement
+        found = SimpleNamespace(
+            design=SimpleNamespace(arrangement=arrangement), noise_estimate=SimpleNamespace(correlation=0.0)
+        )
+        return task, found, arrangement
 
     monkeypatch.setattr(blades, "_selected", selected)
-    monkeypatch.setattr(blades, "_is_missed", lambda *_: missed)
+    monkeypatch.setattr(blades, "is_far", lambda *_: missed)
     monkeypatch.setattr(blades, "criterion", lambda match, _: match.design.arrangement == "annular")
     points = example("vki-ls89").build().sides[0](*np.random.default_rng(2).random((2, 800)))[:, [0, 2, 1]]
     task = Task(points=points, weights=np.ones(len(points)), free=FreeParameters(), bounds={})

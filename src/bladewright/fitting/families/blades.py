@@ -100,12 +100,13 @@ def matched_blade(
             refusals.append(error)
             continue
         design: Any = tried[-1][1].design
-        if not _is_missed(tried[-1][1], target) or design.arrangement == "linear":
+        if not is_far(tried[-1][1], target) or design.arrangement == "linear":
             break
     if not tried:
         raise refusals[0]
     task, found, reason = min(tried, key=lambda each: criterion(each[1], target))
-    if kind.has_contours and own and _is_missed(found, target) and target.parameters is None:
+    misfit = is_far(found, target, NEAR_EVERYWHERE) and found.noise_estimate.correlation > SHARED_VARIANCE
+    if kind.has_contours and own and misfit and target.parameters is None:
         outlined = _through_points(task, found, target)
         found, reason = min(filter(None, ((found, reason), outlined)), key=lambda each: criterion(each[0], target))
     return found, "; ".join(filter(None, (reason, "" if own else WALLS_HELD_NOTE)))
@@ -119,11 +120,6 @@ def _arranged(task: Task, header: DesignHeader, *, own: bool) -> Iterator[tuple[
     yield task, header
     if own and header.arrangement is None:
         yield task.turned(UPRIGHT if spans_along_y(task.points) else 0.0), replace(header, arrangement="linear")
-
-
-def _is_missed(match: Match, target: MatchTarget) -> bool:
-    """Whether a match is not what is asked for, with a misfit that its neighbours share."""
-    return is_far(match, target, NEAR_EVERYWHERE) and match.noise_estimate.correlation > SHARED_VARIANCE
 
 
 def _selected(
