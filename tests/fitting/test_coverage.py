@@ -144,6 +144,7 @@ def test_a_blade_that_is_measured_in_fewer_sections_than_its_laws_have_points_is
     [
         (np.zeros(20), 1),
         (np.array([0.0, 0.33, 0.66, 0.99]), 4),
+        (np.linspace(0.0, 1.0, 5), 4),
         (np.linspace(0.0, 1.0, 9), 7),
         (np.linspace(0.0, 1.0, 21), 11),
     ],

@@ -9,6 +9,7 @@ from scipy.special import stdtrit
 
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.matching.noise import neighbourhood_of
+from bladewright.fitting.matching.residuals import regularisation_of
 from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.matching.search import Match
 from bladewright.nurbs.basis import Reals
@@ -106,24 +107,23 @@ def parameter_estimates(match: Match) -> ParameterEstimates:
 
 
 def shape_covariance(match: Match) -> tuple[tuple[str, ...], Reals]:
-    """The free parameters and those that are held as the points do not determine them; their covariance (k, k).
+    """The free parameters, and those of a blade that are held as undetermined; their covariance (k, k).
 
-    In the units of the fields. A smooth design holds the latter where it has them, and each may be off by its own scale
-    there: between rows of points that moves the shape. Reference: Wahba 1983 (the prior of a smoothing spline as part
-    of what is not known).
+    In the units of the fields. What points do not determine is known by the regularisation alone, the spread of smooth
+    designs: between rows of points that moves a blade's shape. Reference: Wahba 1983 (the penalty of a smoothing spline
+    as its prior, and intervals of what both leave).
     """
-    problem, held = match.problem, tuple(sorted(match.held))
-    count, sizes = len(problem.paths), np.append(problem.scales.size, _size_of(match, held))
+    problem, held = match.problem, () if match.state.shape.exact is None else tuple(sorted(match.held))
+    paths, sizes = (*problem.paths, *held), np.append(problem.scales.size, _size_of(match, held))
     slopes, _, variance, _ = _linearised(match, held)
-    prior = np.eye(count + len(held))[count:]
+    prior = regularisation_of(match.design, paths, sizes, ends_shown=match.ends.in_rows(match.model.chord)).matrix
     # what a bound holds is known
     inside = np.append(problem.scales.inside(problem.values_of(match.design)), np.ones(len(held), dtype=bool))
     rows = np.concatenate([slopes / np.sqrt(variance), prior])[:, inside]
     _, singular, turns = np.linalg.svd(rows, full_matrices=False)
-    known = singular > 1e-13 * singular[0]
     covariance = np.zeros((len(inside), len(inside)))
-    covariance[np.ix_(inside, inside)] = (turns[known].T / singular[known] ** 2) @ turns[known]
-    return (*problem.paths, *held), covariance * np.outer(sizes, sizes)
+    covariance[np.ix_(inside, inside)] = (turns.T / singular**2) @ turns
+    return paths, covariance * np.outer(sizes, sizes)
 
 
 def _size_of(match: Match, paths: Sequence[str]) -> Reals:

@@ -70,12 +70,12 @@ def rows_shown(v: Reals) -> int:
 
     Rows are as many as the most equal parts of the span of which each has points. A spline's control points are
     determined where each basis function has a place of its own (Schoenberg and Whitney 1953), but between so few it
-    swings: a cubic one has an inner knot for every few rows.
+    swings: a cubic one has an inner knot for every few rows, and fewer control points than rows.
     """
     order = 4
     counts = range(ROWS_PER_KNOT * (MOST_SPAN - order), 1, -1)
     rows = next((n for n in counts if len(np.unique(np.minimum((n * v).astype(int), n - 1))) == n), 1)
-    return min(rows, order + rows // ROWS_PER_KNOT)
+    return min(rows - (rows > order), order + rows // ROWS_PER_KNOT)
 
 
 THINNER_EDGES, MOST_THINNINGS = 0.7, 12
