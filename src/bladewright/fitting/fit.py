@@ -31,6 +31,7 @@ from bladewright.fitting.initial_guess.blade import UPRIGHT, spans_along_y
 from bladewright.fitting.matching.noise import EXACT
 from bladewright.fitting.matching.search import Match, Progress, Task, about_x
 from bladewright.fitting.placing import (
+    UPRIGHT_NOTE,
     Finishing,
     Matched,
     PlacedTask,
@@ -56,11 +57,6 @@ CASCADE_NOTE = (
 """note where a cloud without a start was taken for a blade of a linear cascade"""
 TURN_UPRIGHT = Motion(rotation=about_x(UPRIGHT), translation=np.zeros(3))
 """the turn about x that brings y to z"""
-UPRIGHT_NOTE = (
-    "the blade of the linear cascade has its span along y, and is turned about x so that it lies along z: "
-    "where x is not the axial direction, name it (--axis)"
-)
-"""note where a blade was turned so"""
 INTERRUPTED_NOTE = (
     f"the search was interrupted, so the design's tolerance is at least {EXACT:g} of the chord, which "
     "builds in a moment: lower it for finer surfaces"

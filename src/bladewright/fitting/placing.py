@@ -161,6 +161,11 @@ TURNED_NOTE = (
     "{:.6g} deg: the leading edge is near theta = 0 where they are those of the family"
 )
 """note where a match turns the points"""
+UPRIGHT_NOTE = (
+    "the blade of the linear cascade has its span along y, and is turned about x so that it lies along z: "
+    "where x is not the axial direction, name it (--axis)"
+)
+"""note where a cascade's blade is turned upright"""
 
 
 def turned_with(here: PlacedTask, match: Match) -> PlacedTask:
@@ -168,10 +173,11 @@ def turned_with(here: PlacedTask, match: Match) -> PlacedTask:
     if not match.turn:
         return here
     step = Motion(rotation=about_x(match.turn), translation=np.zeros(3))
+    linear = getattr(match.design, "arrangement", None) == "linear"
     return replace(
         here,
         motion=step if here.motion is None else composed(step, here.motion),
-        notes=(*here.notes, TURNED_NOTE.format(np.degrees(match.turn))),
+        notes=(*here.notes, UPRIGHT_NOTE if linear else TURNED_NOTE.format(np.degrees(match.turn))),
         every=here.every.turned(match.turn),
     )
 

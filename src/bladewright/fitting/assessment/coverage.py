@@ -56,7 +56,7 @@ SHARES = (0.9, 0.5, 0.1)
 measured (design/matching_constants.md)."""
 PLACES = {2: (41, 1), 3: (21, 21)}
 """places along each side and along the span, closer at edges and ends, at which it is asked how well the shape is
-known, by dimension; they bound the time. They do not fall on evenly spaced rows of points"""
+known, by dimension; they bound the time. But for the ends and the middle they lie between even rows of points"""
 CONFIDENCE = 0.95
 """probability with which bands and ends are as near as is said [-]. It is that of Neyman 1937."""
 NORMAL_95 = float(ndtri((1.0 + CONFIDENCE) / 2.0))

@@ -227,7 +227,8 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
     found = replace(found, backwards=_backwards(found, kind, like, middle))
     band = _band(task, closed, float(SECTION_SPANS[MIDDLE]))
     part = None if like is None else with_mean_laws(like.section)
-    tried, refusal = list[tuple[Match, _Frame]](), FitError("no plane of sections was tried")
+    tried = list[tuple[Match, _Frame]]()
+    refusal: Exception = FitError("no plane of sections was tried")
     for plane, turn in _planes(task, found, like, middle):
         shapes = [section_shape(each, unroll=plane == UNROLLED, turn=turn) for each in built]
         beside = unrolled(built[MIDDLE], band, turn) if plane == UNROLLED else band
@@ -238,7 +239,7 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
             frame = _Frame(plane=plane, turn=turn, shapes=shapes)
             tried += [(match, frame) for match in matches]
         except (DesignError, FitError) as error:
-            refusal = FitError(str(error))
+            refusal = error
     few, blades = task.thinned(QUICK_POINTS), list[tuple[Match, _Frame]]()
     off = misfits([match for match, _ in tried]) if tried else []
     for number in np.argsort(off, kind="stable"):
@@ -252,7 +253,7 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
             design = _blade_of(found, frame, kind.blade, section, like, header)
             blades.append((compared(few.turned(frame.turn), iter([design]))[0], frame))
         except (DesignError, FitError) as error:
-            refusal = FitError(str(error))
+            refusal = error
     if not blades:
         raise refusal
     best, frame = blades[_alike([match for match, _ in blades])[0]]

@@ -211,6 +211,7 @@ def _(part: Segmented, span: Span) -> Array:
 
 @infeasibility.register
 def _(part: CurvatureMeanline, span: Span) -> Array:
+    """No margins: a thickness is refused or it is not."""
     part.thickness.at(span)
     return np.zeros(0)
 
