@@ -11,6 +11,7 @@ from bladewright.fitting.assessment.coverage import (
 )
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import free_parameters_of
+from bladewright.fitting.matching.footpoints import Footpoints
 from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.model_selection.laws import MOST_SPAN
 from bladewright.fitting.model_selection.reshaping import rows_shown
@@ -139,6 +140,12 @@ def test_a_blade_that_is_measured_in_fewer_sections_than_its_laws_have_points_is
     assert np.max(bands.half_widths[(bands.v == 0.0) | (bands.v == 1.0)]) < 1e-3 * found.model.chord
 
 
+def feet_of(u, v):
+    """Footpoints on the upper side alone."""
+    none = np.zeros((len(u), 3))
+    return Footpoints(side=np.zeros(len(u), dtype=int), u=u, v=v, points=none, normals=none, beyond=none, miss=none)
+
+
 @pytest.mark.parametrize(
     ("v", "shown"),
     [
@@ -150,11 +157,20 @@ def test_a_blade_that_is_measured_in_fewer_sections_than_its_laws_have_points_is
     ],
 )
 def test_rows_along_the_span_show_so_many_control_points_of_a_cubic_law_with_a_knot_for_each_third(v, shown):
-    assert rows_shown(np.repeat(v, 30)) == shown
+    u, v = np.meshgrid(np.linspace(0.0, 1.0, 30), v)
+    assert rows_shown(feet_of(u.ravel(), v.ravel())) == shown
+
+
+def test_rows_that_lead_across_the_span_show_fewer_control_points_than_there_are_rows():
+    u, v = np.meshgrid(np.linspace(0.0, 1.0, 80), np.linspace(0.0, 1.0, 9))
+    across = 0.9 * v.ravel() + 0.1 * u.ravel()
+    assert len(np.unique(np.minimum((18 * across).astype(int), 17))) == 18
+    assert rows_shown(feet_of(u.ravel(), across)) == 8
 
 
 def test_points_all_over_a_blade_show_as_many_control_points_as_a_law_may_have():
-    assert rows_shown(np.random.default_rng(0).random(1000)) == MOST_SPAN
+    u, v = np.random.default_rng(0).random((2, 4000))
+    assert rows_shown(feet_of(u, v)) == MOST_SPAN
 
 
 def test_an_end_without_points_on_a_part_of_the_chord_is_bare_there_alone():

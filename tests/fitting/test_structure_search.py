@@ -3,7 +3,6 @@
 from itertools import chain, repeat
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
 from bladewright.fitting.assessment.acceptance import MatchTarget
@@ -74,7 +73,6 @@ def test_where_nothing_keeps_the_aim_the_nearest_is_given_and_the_search_ends(fo
 
 def test_a_richer_structure_that_is_no_nearer_ends_the_search_for_rich_ones(monkeypatch):
     task = SimpleNamespace(points=range(100), dimension=3, free=lambda _: ())
-    feet = SimpleNamespace(footpoints=SimpleNamespace(v=np.zeros(1)))
     # nearer at its worst place, and further off elsewhere, whenever it is searched
     off = chain([(1e-4, 1e-2)], repeat((2e-4, 1e-3)))
     searched = []
@@ -90,7 +88,6 @@ def test_a_richer_structure_that_is_no_nearer_ends_the_search_for_rich_ones(monk
         "searched": search,
         "without_false_outliers": lambda _, match: match,
         "has_systematic_misfit": lambda _: True,
-        "rows_shown": lambda _: 1,
         "rich_structure": lambda *_, **__: None,
         "wider_structure": lambda *_, **__: None,
         "widened_where_feasible": lambda design, _: design,
@@ -98,9 +95,8 @@ def test_a_richer_structure_that_is_no_nearer_ends_the_search_for_rich_ones(monk
     }.items():
         monkeypatch.setattr(structure_search, name, stand_in)
     monkeypatch.setattr(StructureSearch, "_is_enough", lambda *_: False)
+    monkeypatch.setattr(StructureSearch, "_rows_shown", lambda *_: 1)
     monkeypatch.setattr(StructureSearch, "_without_surplus", lambda _, match, *__: match.design)
-    first = SimpleNamespace(
-        rms=1e-3, maximum=1e-1, design=None, rows=slice(None), state=feet, model=SimpleNamespace(chord=1.0)
-    )
+    first = SimpleNamespace(rms=1e-3, maximum=1e-1, design=None, model=SimpleNamespace(chord=1.0))
     found = StructureSearch(task=task, samples=0, first=None).rich(first, MatchTarget(tolerance=1e-5))
     assert (found is searched[0], len(searched)) == (True, 2)

@@ -120,7 +120,7 @@ class StructureSearch:
         """
         found, least = match, target.tolerance or NEAR * match.model.chord
         search = partial(searched, min_reduction=ROUGH_REDUCTION, settled=SETTLED_RICH, fading=True)
-        shown = len(self.task.points), rows_shown(match.state.footpoints.v[match.rows])
+        shown = len(self.task.points), self._rows_shown(match)
         while found is match or (has_systematic_misfit(found) and not self._is_enough(found, target)):
             try:
                 slim = self.task.dimension == 3 and (not target.open or is_exact(found))
@@ -284,10 +284,16 @@ class StructureSearch:
         self.task.progress("structure")
         return LinearModel(match, self.samples)
 
+    def _rows_shown(self, match: Match) -> int:
+        """How many control points along the span all points show."""
+        if len(match.rows) < len(self.task.points):
+            match = evaluated(self.task, match.design, noise=match.rms)
+        return rows_shown(match.state.footpoints.part(match.rows))
+
     def _widened(self, match: Match) -> Match:
         """A match with more control points in every law, not searched, or the same where that leaves it no shape."""
         try:
-            free, rows = self.task.free(match.design), rows_shown(match.state.footpoints.v[match.rows])
+            free, rows = self.task.free(match.design), self._rows_shown(match)
             design = reshaped(match.design, wider_structure(match.design, free, len(self.task.points), rows))
             return searched(self.task, design, noise=match.rms, rounds=0)
         except (DesignError, FitError):
