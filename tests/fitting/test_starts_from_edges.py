@@ -29,7 +29,7 @@ def test_exact_points_that_are_not_met_are_sought_from_the_other_first_matches(
 ):
     seen = []
 
-    def begun(search, few, target, first):
+    def begun(search, _few, _target, first):
         seen.append(first.name)
         return search, first, match(first.name, reached[first.name])
 
