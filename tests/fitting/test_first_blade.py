@@ -10,7 +10,7 @@ from bladewright.blade.native.blade import Blade
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.blade import arranged_channels, first_blade, spans_along_y
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Task, evaluated, searched
-from bladewright.fitting.model_selection.edges import from_edges
+from bladewright.fitting.model_selection.edges import nearest_from_other_edges
 from bladewright.fitting.model_selection.selection import GUESS_NOISE
 from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.nurbs.closest import closest_on_surface
@@ -64,7 +64,7 @@ def test_a_first_blade_is_brought_nearer_from_usual_edges() -> None:
         points=points, weights=np.ones(600), free=FreeParameters(), bounds={}, preliminary=True, outline=outline
     )
     plain = searched(task, start, noise=GUESS_NOISE, min_reduction=ROUGH_REDUCTION)
-    nearer = next(from_edges(task, plain, GUESS_NOISE))
+    nearer = nearest_from_other_edges(task, plain, GUESS_NOISE)
     assert nearer.mean_distance < 0.7 * plain.mean_distance
 
 

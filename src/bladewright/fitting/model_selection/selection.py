@@ -4,8 +4,6 @@ What the points do not determine then is held, and a last search takes more poin
 """
 
 from dataclasses import replace
-from functools import partial
-from itertools import chain
 
 from bladewright.designs import Design
 from bladewright.errors import FitError
@@ -19,12 +17,11 @@ from bladewright.fitting.matching.search import (
     Task,
     evaluated,
     has_systematic_misfit,
-    is_exact,
     is_refused,
     searched,
     without_false_outliers,
 )
-from bladewright.fitting.model_selection.edges import from_edges, from_other_edges, with_sharp_edges
+from bladewright.fitting.model_selection.edges import from_other_edges, nearest_from_other_edges, with_sharp_edges
 from bladewright.fitting.model_selection.structure import Structure, reshaped, structure_of
 from bladewright.fitting.model_selection.structure_search import (
     ENOUGH,
@@ -66,20 +63,23 @@ def selected_match(
     few, noise = task.thinned(QUICK_POINTS) if task.dimension == 3 else several, GUESS_NOISE if guessed else None
     few = replace(few, preliminary=guessed and task.dimension == 3)
     found = searched(few, first, noise=noise, min_reduction=ROUGH_REDUCTION)
-    starts = from_edges(few, found, GUESS_NOISE) if guessed else iter([found])
-    found = next(starts)
+    found = nearest_from_other_edges(few, found, GUESS_NOISE) if guessed else found
     if target.structured and target.tolerance is None:
         return _of_structure(several, many, found, like or structure_of(first), guessed=guessed), ""
     held = target.parameters is not None and bool(corner_radii(first)) and found.ends.in_rows(found.model.chord)
     reason = CORNERS_HELD_NOTE if held else ""
     several, many = map(_with_corners_held, (several, many)) if held else (several, many)
     search = StructureSearch(task=several, samples=(like or structure_of(first)).samples, first=found.design)
-    begin = partial(_begun, search, few if few.preliminary else None, target)
-    begun = begin(found)
-    if not _is_near(begun[-1], target):
-        # the nearest of the first matches need not end nearest
-        begun = min(chain([begun], map(begin, starts)), key=lambda each: each[-1].maximum)
-    search, found, rich = begun
+    if task.dimension == 3 and guessed:
+        # laws that need no control points along the span begin as constants
+        found = replace(search, task=few, predictions=1).well_predicted(found)
+        search = replace(search, first=found.design)
+    near = target.open and found.maximum < NEAR * found.model.chord
+    rich = found if near else search.rich(found, target, sampled=target.parameters is None)
+    if len(rich.rows) < len(several.points):
+        # no richer one has a shape, or none is needed: the first match, of few points, stands
+        rich = evaluated(several, rich.design, noise=rich.rms)
+    rich = without_false_outliers(several, rich)
     if target.parameters is not None:
         sized = search.of_size(rich, target.parameters)
         found = sized if len(sized.problem.paths) <= target.parameters else found
@@ -100,30 +100,6 @@ def selected_match(
         within, _ = search.within(rich, ENOUGH * rich.model.chord)
         last, note = min((last, note), determined(many, within), key=lambda each: each[0].maximum)
     return last, note
-
-
-def _begun(
-    search: StructureSearch, few: Task | None, target: MatchTarget, match: Match
-) -> tuple[StructureSearch, Match, Match]:
-    """The search for a structure that begins with a match, what it begins with, and a rich match.
-
-    By `few` points laws that need no control points along the span begin as constants.
-    """
-    search = replace(search, first=match.design)
-    if few is not None:
-        match = replace(search, task=few, predictions=1).well_predicted(match)
-        search = replace(search, first=match.design)
-    near = target.open and match.maximum < NEAR * match.model.chord
-    rich = match if near else search.rich(match, target, sampled=target.parameters is None)
-    if len(rich.rows) < len(search.task.points):
-        # no richer one has a shape, or none is needed: the first match, of few points, stands
-        rich = evaluated(search.task, rich.design, noise=rich.rms)
-    return search, match, without_false_outliers(search.task, rich)
-
-
-def _is_near(rich: Match, target: MatchTarget) -> bool:
-    """Whether a rich match is as near to exact points as is asked; others may leave a misfit of their own."""
-    return not is_exact(rich) or rich.maximum <= (target.tolerance or NEAR * rich.model.chord)
 
 
 def _searched_further(task: Task, match: Match) -> Match:
