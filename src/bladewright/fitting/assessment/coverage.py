@@ -12,7 +12,7 @@ from scipy.special import fdtri, ndtri
 from bladewright.fitting.assessment.estimates import shape_covariance
 from bladewright.fitting.free_parameters import parameters_of_curve
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS
-from bladewright.fitting.matching.footpoints import EDGE_PARAMETERS, Side, footpoints_at
+from bladewright.fitting.matching.footpoints import EDGE_PARAMETERS, Side, footpoints_at, part_of
 from bladewright.fitting.matching.noise import EXACT, SIGNIFICANCE
 from bladewright.fitting.matching.search import Match
 from bladewright.numerics.elementary import cumulative_length
@@ -144,7 +144,7 @@ def bare_stretches(match: Match) -> list[tuple[float, str]]:
     there.
     """
     feet, sides = match.state.footpoints.part(match.rows), match.state.shape.sides
-    part, found = np.minimum((PARTS * feet.v).astype(np.intp), PARTS - 1), list[tuple[float, str]]()
+    part, found = part_of(feet.v, PARTS), list[tuple[float, str]]()
     u = np.linspace(0.0, 1.0, WAY_SAMPLES)
     for number in np.unique(part):
         own = feet.part(part == number)
@@ -224,7 +224,7 @@ def past_points(match: Match, side: NDArray[np.intp], u: Reals, v: Reals) -> dic
 
 def _part_of(side: NDArray[np.intp], along: Reals) -> NDArray[np.intp]:
     """Numbers (n,) of the parts of both sides in which places are."""
-    return side * PARTS + np.minimum((PARTS * along).astype(np.intp), PARTS - 1)
+    return side * PARTS + part_of(along, PARTS)
 
 
 def least_thickness(match: Match) -> float:

@@ -10,7 +10,14 @@ from scipy.spatial import cKDTree
 from bladewright.blade.exact.exact_blade import ExactBlade
 from bladewright.derivatives.complex_step import STEP
 from bladewright.fitting.clouds.thinning import random_subset
-from bladewright.fitting.matching.footpoints import EDGE_PARAMETERS, Footpoints, Side, footpoints_at, unit_or_zero
+from bladewright.fitting.matching.footpoints import (
+    EDGE_PARAMETERS,
+    Footpoints,
+    Side,
+    footpoints_at,
+    part_of,
+    unit_or_zero,
+)
 from bladewright.fitting.models.model import ModelShape
 from bladewright.numerics.robust import median_deviation
 from bladewright.nurbs.basis import Reals
@@ -196,7 +203,7 @@ def _outermost(footpoints: Footpoints, rows: NDArray[np.bool_], end: float) -> N
     Where most parts of the chord show the end, they are those beside the outermost points of each part: a corner that
     has slid past its points is far from its row.
     """
-    away, part = np.abs(footpoints.v - end), np.minimum((ROW_PARTS * footpoints.u).astype(np.intp), ROW_PARTS - 1)
+    away, part = np.abs(footpoints.v - end), part_of(footpoints.u, ROW_PARTS)
     least = np.full(ROW_PARTS, np.inf)
     np.minimum.at(least, part[rows], away[rows])
     slid = np.where(np.mean(least < ROW_BAND) > ROW_SHARE, least, 0.0)[part]

@@ -64,6 +64,11 @@ class Footpoints:
         return Footpoints(**{each.name: getattr(self, each.name)[rows] for each in fields(Footpoints)})
 
 
+def part_of(places: Reals, count: int) -> NDArray[np.intp]:
+    """Which of so many equal parts of [0, 1], from 0 on, places (n,) are in."""
+    return np.minimum((count * places).astype(np.intp), count - 1)
+
+
 def concatenated(parts: Sequence[Footpoints]) -> Footpoints:
     """Several sets of footpoints as one, in order."""
     names = [each.name for each in fields(Footpoints)]

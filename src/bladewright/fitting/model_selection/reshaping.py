@@ -4,12 +4,11 @@ from collections.abc import Callable, Collection, Iterable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Design
 from bladewright.errors import DesignError
-from bladewright.fitting.matching.footpoints import Footpoints
+from bladewright.fitting.matching.footpoints import Footpoints, part_of
 from bladewright.fitting.matching.noise import EXACT
 from bladewright.fitting.model_selection.laws import MOST_SPAN, ResizableLaw
 from bladewright.fitting.model_selection.structure import (
@@ -63,11 +62,11 @@ def richest(design: Design) -> Structure:
 
 ROWS_PER_KNOT = 3
 """rows of points for each inner knot of a law along the span, where Ruppert 2002 has four: with four Rotor 67, whose
-rows are a twentieth apart, does not pass, with two a propeller is 3.5e-3 of the chord off between its 21 rows
+rows lie in 20 parts of the span, does not pass, with two a propeller is 3.5e-3 of the chord off between its 21 rows
 (design/matching.md)"""
 CHORD_PARTS = 10
-"""parts of each side, along the chord, in each of which rows are counted: from twice to four times as many count alike
-(design/matching.md)"""
+"""parts of each side, along the chord, in each of which rows are counted: with 20 and 40 the rows of six clouds count
+the same within one (design/matching.md)"""
 
 
 def rows_shown(feet: Footpoints) -> int:
@@ -75,28 +74,24 @@ def rows_shown(feet: Footpoints) -> int:
 
     A spline's control points are determined where each basis function has a place of its own (Schoenberg and Whitney
     1953), but between so few it swings: a cubic one has an inner knot for every few rows, and fewer control points than
-    rows. For its knots, rows are as many as the most equal parts of the span of which each has points, so that rows
-    that lead across the design's lines are more than there are anywhere along the chord.
+    rows. Rows are counted in parts of the chord, of which the median counts, as the most places that are clearly apart.
+    Rows that lead across the design's lines show more of the span than there are rows: its knots go by the most equal
+    parts of it that all have points.
     """
     order = 4
     most = ROWS_PER_KNOT * (MOST_SPAN - order)
-    part = feet.side * CHORD_PARTS + _part_of(feet.u, CHORD_PARTS)
+    part = feet.side * CHORD_PARTS + part_of(feet.u, CHORD_PARTS)
     rows = int(np.median([_apart(feet.v[part == number], 1.0 / most) for number in np.unique(part)]))
-    filled = next((n for n in range(most, 1, -1) if len(np.unique(_part_of(feet.v, n))) == n), 1)
+    filled = next((n for n in range(most, 1, -1) if len(np.unique(part_of(feet.v, n))) == n), 1)
     return min(rows - (rows > order), order + filled // ROWS_PER_KNOT)
 
 
 def _apart(places: Reals, distance: float) -> int:
-    """How many of some places (n,) are so far apart at least, from the lowest on."""
+    """How many of some places (n,) are at least a distance apart, taken from the lowest on."""
     ordered, count, row = np.sort(places), 0, 0
     while row < len(ordered):
         count, row = count + 1, int(np.searchsorted(ordered, ordered[row] + distance))
     return count
-
-
-def _part_of(places: Reals, count: int) -> NDArray[np.intp]:
-    """Which of so many equal parts of [0, 1] places (n,) are in."""
-    return np.minimum((count * places).astype(np.intp), count - 1)
 
 
 THINNER_EDGES, MOST_THINNINGS = 0.7, 12

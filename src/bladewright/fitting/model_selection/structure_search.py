@@ -5,6 +5,7 @@ distance that a rich match keeps, which the regularisation of its laws holds (P-
 """
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
@@ -285,9 +286,11 @@ class StructureSearch:
         return LinearModel(match, self.samples)
 
     def _rows_shown(self, match: Match) -> int:
-        """How many control points along the span all points show."""
+        """How many control points along the span the points of the task show, or those of a match that has fewer."""
         if len(match.rows) < len(self.task.points):
-            match = evaluated(self.task, match.design, noise=match.rms)
+            # by finer knots a design may have no shape
+            with suppress(FitError):
+                match = evaluated(self.task, match.design, noise=match.rms)
         return rows_shown(match.state.footpoints.part(match.rows))
 
     def _widened(self, match: Match) -> Match:
