@@ -52,7 +52,7 @@ def test_rows_at_both_ends_lie_on_the_walls():
     for wall in found.walls.values():
         assert len(wall.places) >= 40
         # native sides follow the exact blade within 1e-6 of the chord
-        assert np.max(np.abs(wall.distances(there.exact))) < 3e-6 * model.chord
+        assert np.max(np.abs(wall.located(there.exact)[2])) < 3e-6 * model.chord
         assert wall.spread < 1e-6 * model.chord
     assert not found.on_end_face.any()
 
@@ -73,10 +73,10 @@ def test_a_row_is_found_among_points_beside_it_where_its_wall_is_not_known_yet()
     )
     found = blade_ends_of(points, nearest_footpoints(points, other.sides), other, np.ones(len(points), dtype=bool))
     for name in ("hub", "shroud"):
-        off = found.walls[name].distances(there.exact)
+        off = found.walls[name].located(there.exact)[2]
         assert len(off) < 660
         assert np.count_nonzero(np.abs(off) < 3e-6 * model.chord) >= 600
-        assert np.max(np.abs(found.walls[name].distances(other.exact))) > 3e-4 * model.chord
+        assert np.max(np.abs(found.walls[name].located(other.exact)[2])) > 3e-4 * model.chord
 
 
 def test_points_a_little_inside_beside_an_end_are_no_end_face():
@@ -98,7 +98,7 @@ def test_a_corner_that_has_slid_past_its_row_is_still_shown_by_it():
     feet = nearest_footpoints(points, model.shape(slid).sides)
     found = blade_ends_of(points, feet, model.shape(slid), np.ones(len(points), dtype=bool))
     hub = found.walls["hub"]
-    row = np.flatnonzero(np.abs(hub.distances(there.exact)) < 1e-6 * model.chord)
+    row = np.flatnonzero(np.abs(hub.located(there.exact)[2]) < 1e-6 * model.chord)
     # of 120, some of them farther than 1.5 % of the span
     assert len(row) >= 100
     assert np.max(feet.v[hub.rows[row]]) > 0.015
@@ -149,7 +149,7 @@ def test_places_on_a_wall_move_as_central_differences_say(end):
     design, _, there = shape(BLADE)
     found, _ = ends(BLADE, sides_cloud(BLADE, 50, rows=20))
     wall = found.walls[end]
-    t, _, _ = wall.misses(there.exact)
+    t, _, _ = wall.located(there.exact)
     paths = [path for path in design.parameters() if path.startswith("channel.")] + ["stagger[0]"]
     rates, values = wall.rates(there, t, paths), design.parameters()
     for i, path in enumerate(paths):

@@ -130,7 +130,7 @@ def measured(
 def _off_wall(name: str, points: Reals, built: Blade) -> Reals:
     """Signed distances (n,) [m] of points (n, 3) from hub or shroud."""
     places = in_meridian(points, built.exact.mapping.revolved)
-    return WallPoints(name=name, places=places, spread=0.0).distances(built.exact)
+    return WallPoints(name=name, places=places).located(built.exact)[2]
 
 
 def off_walls(points: Reals, built: Blade) -> dict[str, Reals]:

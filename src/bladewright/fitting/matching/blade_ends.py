@@ -2,13 +2,14 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from bladewright.blade.exact.exact_blade import ExactBlade
-from bladewright.derivatives.complex_step import STEP
+from bladewright.blade.native.cut_lines import in_meridian
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.matching.footpoints import (
     EDGE_PARAMETERS,
@@ -18,7 +19,7 @@ from bladewright.fitting.matching.footpoints import (
     part_of,
     unit_or_zero,
 )
-from bladewright.fitting.models.model import ModelShape
+from bladewright.fitting.models.model import ModelShape, stepped_rates
 from bladewright.numerics.robust import median_deviation
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.surface import Surface
@@ -75,16 +76,14 @@ class WallPoints:
     """of the wall: hub or shroud"""
     places: Reals
     """(m, 2) the points in (x, r) [m]"""
-    spread: float
+    spread: float = 0.0
     """standard deviation of their distances from one curve: small where the cloud has a row there [m]"""
     rows: NDArray[np.intp] = field(default_factory=lambda: np.empty(0, dtype=np.intp))
     """(m,) which points of the cloud they are; none of a wall beside the blade"""
 
-    def misses(self, exact: ExactBlade) -> tuple[Reals, Reals, Reals]:
-        """Nearest parameters, unit normals and misses (m,), (m, 2), (m, 2) on the channel's curve, continued."""
+    def located(self, exact: ExactBlade) -> tuple[Reals, Reals, Reals]:
+        """Nearest parameters (m,) on the wall's curve, continued, unit normals (m, 2) and signed distances (m,) [m]."""
         line = exact.wall(self.name)
-        if len(self.places) == 0:
-            return np.empty(0), self.places, self.places
         t = np.linspace(-0.05, 1.05, 400)
         _, index = cKDTree(np.real(line.values(t))).query(self.places)
         t = t[index]
@@ -95,44 +94,26 @@ class WallPoints:
             t = np.clip(t - np.sum(miss * first, axis=-1) / np.where(rise > 0.0, rise, np.inf), -0.1, 1.1)
         value, first = (np.real(line.values(t, order)) for order in range(2))
         normal = np.stack([-first[:, 1], first[:, 0]], axis=-1) / np.sqrt(np.sum(first**2, axis=-1))[:, None]
-        return t, normal, self.places - value
-
-    def distances(self, exact: ExactBlade) -> Reals:
-        """Signed distances (m,) from the curve [m]."""
-        return self.located(exact)[1]
-
-    def located(self, exact: ExactBlade) -> tuple[Reals, Reals]:
-        """Nearest parameters and signed distances (m,) from the curve [m]."""
-        t, normal, miss = self.misses(exact)
-        return t, np.asarray(np.sum(normal * miss, axis=-1))
+        return t, normal, np.asarray(np.sum(normal * (self.places - value), axis=-1))
 
     def motion_rates(self, exact: ExactBlade, points: Reals, rates: Reals) -> Reals:
         """Rates (m, 2, k) of the places where points (n, 3) of the cloud move at rates (n, 3, k); 0 of walls beside."""
         if len(self.rows) == 0:
             return np.zeros((len(self.places), 2, rates.shape[2]))
-        radial = (
-            points[self.rows] * [0.0, 1.0, 1.0]
-            if exact.mapping.revolved
-            else np.tile([0.0, 0.0, 1.0], (len(self.rows), 1))
-        )
-        radial = radial / np.sqrt(np.sum(radial**2, axis=1))[:, None]
+        across = points[self.rows] * [0.0, 1.0, 1.0]
+        radial = unit_or_zero(across) if exact.mapping.revolved else np.tile([0.0, 0.0, 1.0], (len(across), 1))
         return np.stack([rates[self.rows, 0], np.einsum("md,mdk->mk", radial, rates[self.rows])], axis=1)
 
     def rates(self, shape: ModelShape, t: Reals, paths: Sequence[str]) -> Reals:
         """Derivatives (m, k, 2) of the places on the curve at held parameters."""
-        found = np.zeros((len(t), len(paths), 2))
-        exact = shape.exact
-        moving = [i for i, path in enumerate(paths) if path.startswith(("channel.", "flow_path.", "tip_", "hub_"))]
-        if not moving or exact is None:
-            return found
-        values = shape.design.parameters()
-        kicks = 1j * STEP * np.eye(len(moving))
-        changed = shape.design.changed(
-            {paths[i]: values[paths[i]] + kick for i, kick in zip(moving, kicks, strict=True)}
-        )
-        rows = np.imag(exact.moved_to(changed).wall(self.name).values(t)) / STEP
-        found[:, moving] = np.moveaxis(np.broadcast_to(rows, (len(moving), len(t), 2)), 0, 1)
-        return found
+
+        def places(design: Any) -> Reals:
+            found = shape.exact.moved_to(design).wall(self.name).values(t)
+            return np.reshape(found, (*found.shape[:-2], -1))
+
+        moving = ("channel.", "flow_path.", "tip_", "hub_")
+        found = stepped_rates(shape, paths, moving, 2 * len(t), places)
+        return np.moveaxis(found.reshape(len(paths), len(t), 2), 0, 1)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -162,13 +143,12 @@ def blade_ends_of(
     exact = shape.exact
     if exact is None:
         return BladeEnds(walls={}, on_end_face=on_end_face, near=np.empty(0, dtype=np.intp))
-    radius = np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2) if exact.mapping.revolved else points[:, 2]
-    places = np.stack([points[:, 0], radius], axis=-1)
+    places = in_meridian(points, exact.mapping.revolved)
     usual = median_deviation(footpoints.distances[rows])
     walls = {}
     for name, end in END_PARAMETERS.items():
         inside = np.flatnonzero((np.abs(footpoints.v - end) < FACE_BAND) & (footpoints.heights < -FACE_DEPTH * usual))
-        distances = WallPoints(name=name, places=places[inside], spread=0.0).distances(exact)
+        distances = WallPoints(name=name, places=places[inside]).located(exact)[2]
         share = np.abs(distances) / -footpoints.heights[inside]
         # points of a solid's end faces are outliers to its sides; so are stray points, which stand in no row
         facing = ~rows[inside] & (share < FACE_NEARER_WALL)
@@ -183,8 +163,7 @@ def blade_ends_of(
         chosen = np.flatnonzero(row | (on_end_face & (np.abs(footpoints.v - end) < FACE_BAND)))
         if len(chosen) < FEWEST_ROW_POINTS:
             continue
-        wall = WallPoints(name=name, places=places[chosen], spread=0.0)
-        aside = _off_row(*wall.located(exact), inward=1.0 if end == 0.0 else -1.0)
+        aside = _off_row(WallPoints(name=name, places=places[chosen]), exact)
         spread = median_deviation(aside)
         # points of the sides beside the row would pull the end inwards
         chosen = chosen[aside <= ROW_WIDTH * max(spread, ROW_LEAST_WIDTH * float(np.ptp(places)))]
@@ -214,29 +193,27 @@ def _nearer_wall(places: Reals, exact: ExactBlade) -> str:
     """The name of the wall that most of places (m, 2) beside a blade are nearer to."""
 
     def away(name: str) -> float:
-        return float(np.median(np.abs(WallPoints(name=name, places=places, spread=0.0).distances(exact))))
+        return float(np.median(np.abs(WallPoints(name=name, places=places).located(exact)[2])))
 
     return min(END_PARAMETERS, key=away)
 
 
 def _wall_beside(name: str, places: Reals, exact: ExactBlade) -> WallPoints:
     """The points of a wall beside a blade that are between its leading and its trailing edge."""
-    t, distances = WallPoints(name=name, places=places, spread=0.0).located(exact)
+    t, _, _ = WallPoints(name=name, places=places).located(exact)
     between = np.flatnonzero((t > 0.0) & (t < 1.0))
-    between = between[random_subset(len(between), MOST_WALL_POINTS)]
-    aside = _off_row(t[between], distances[between], inward=1.0 if name == "hub" else -1.0)
-    return WallPoints(name=name, places=places[between], spread=median_deviation(aside) if len(between) else 0.0)
+    found = WallPoints(name=name, places=places[between[random_subset(len(between), MOST_WALL_POINTS)]])
+    return replace(found, spread=median_deviation(_off_row(found, exact))) if len(between) else found
 
 
-def _off_row(t: Reals, distances: Reals, *, inward: float) -> Reals:
+def _off_row(wall: WallPoints, exact: ExactBlade) -> Reals:
     """Distances (m,) [m] from the row in which most places stand, which may be off the wall by a smooth law.
 
-    The law is a polynomial of `t`, first that of a quantile, as places beside the row lie inwards of it only, where
-    `distances` have the sign `inward`. Reference: Koenker and Bassett 1978 (quantiles), by iteratively reweighted least
-    squares.
+    The law is a polynomial along the wall, first that of a quantile, as places beside the row lie inwards of it only.
+    Reference: Koenker and Bassett 1978 (quantiles), by iteratively reweighted least squares.
     """
-    if len(t) == 0:
-        return distances
+    t, _, distances = wall.located(exact)
+    inward = 1.0 if wall.name == "hub" else -1.0
     terms = np.polynomial.chebyshev.chebvander(2.0 * t - 1.0, min(ROW_DEGREE, len(t) // FEWEST_ROW_POINTS - 1))
     roots, left = np.ones(len(t)), distances
     for _ in range(ROW_TURNS):

@@ -208,15 +208,12 @@ class CloudResiduals:
 
     def residuals(self, state: PlacedCloud) -> Reals:
         """All residuals (m,); those of the points (n,) along their normals come first."""
-        footpoints, chord = state.footpoints, self.model.chord
-        rows = [self.roots * footpoints.heights / chord]
-        rows.append((self.roots * np.sum(footpoints.miss * footpoints.beyond, axis=-1))[self.ends.near] / chord)
-        exact = state.shape.exact
-        if exact is not None:
-            rows += [self._of_wall(wall) * wall.distances(exact) / chord for wall in self.ends.walls.values()]
-        excess = self.overhang.excess(self.overhang.edges(state.shape.sides))
-        rows.append(self._of_edge * np.maximum(excess, 0.0) / chord)
-        return np.concatenate(rows)
+        footpoints, shape = state.footpoints, state.shape
+        past = np.sum(footpoints.miss * footpoints.beyond, axis=-1)
+        walls = [self._of_wall(wall) * wall.located(shape.exact)[2] for wall in self.ends.walls.values()]
+        edges = self._of_edge * np.maximum(self.overhang.excess(self.overhang.edges(shape.sides)), 0.0)
+        rows = [self.roots * footpoints.heights, (self.roots * past)[self.ends.near], *walls, edges]
+        return np.concatenate(rows) / self.model.chord
 
     def slopes(self, state: PlacedCloud, paths: Sequence[str]) -> Reals:
         """Derivatives (m, k) by parameters at held footpoints, which move along the surface only."""
@@ -224,10 +221,8 @@ class CloudResiduals:
         every, edges = np.split(self.model.along(shape, *self.places(state), paths), [-len(self.overhang.u)])
         blocks = [every]
         for wall in self.ends.walls.values():
-            if shape.exact is not None:
-                t, normal, _ = wall.misses(shape.exact)
-                moving = wall.rates(shape, t, paths)
-                blocks.append(-self._of_wall(wall) * np.einsum("nkd,nd->nk", moving, normal))
+            t, normal, _ = wall.located(shape.exact)
+            blocks.append(-self._of_wall(wall) * np.einsum("nkd,nd->nk", wall.rates(shape, t, paths), normal))
         return np.concatenate([*blocks, edges]) / chord
 
     def motion_slopes(self, state: PlacedCloud, rates: Reals) -> Reals:
@@ -236,10 +231,9 @@ class CloudResiduals:
         directions = self.roots[:, None] * footpoints.normals, (self.roots[:, None] * footpoints.beyond)[near]
         blocks = [np.einsum("nd,ndk->nk", *each) for each in zip(directions, (rates, rates[near]), strict=True)]
         exact = state.shape.exact
-        if exact is not None:
-            for wall in self.ends.walls.values():
-                across = self._of_wall(wall) * wall.misses(exact)[1]
-                blocks.append(np.einsum("nd,ndk->nk", across, wall.motion_rates(exact, self.points, rates)))
+        for wall in self.ends.walls.values():
+            across = self._of_wall(wall) * wall.located(exact)[1]
+            blocks.append(np.einsum("nd,ndk->nk", across, wall.motion_rates(exact, self.points, rates)))
         return np.concatenate(blocks) / self.model.chord
 
     def places(self, state: PlacedCloud) -> tuple[Footpoints, Reals]:
