@@ -71,8 +71,6 @@ EXACT = 1e-4
 """distance to which exact points are to be met, of the extent of the cloud or of the chord. No point nearer than that
 is an outlier, as those at an edge lie further off than the noise that all others show; half and twice change nothing
 measured (design/matching_constants.md)."""
-
-
 CROWD = 2
 """neighbours that are outliers beside one of a part that is not found: of 1 % that scatter, 3 in 1,000 have so many."""
 SIGNIFICANCE = 1e-3
@@ -109,13 +107,10 @@ def neighbourhood_of(points: Reals, footpoints: Footpoints) -> Neighbourhood:
     )
 
 
-def outliers_of(
-    heights: Reals, past: Reals, distances: Reals, weights: Reals, footpoints: Footpoints, around: Neighbourhood
-) -> NDArray[np.bool_]:
-    """Which of n points are outliers, by their signed distances, their way past the ends and their distances [m].
-
-    Weights are positive inverse variances, relative to each other.
-    """
+def _outliers_of(footpoints: Footpoints, weights: Reals, around: Neighbourhood) -> NDArray[np.bool_]:
+    """Which of n points are outliers; weights (n,) are positive inverse variances, relative to each other."""
+    heights, distances = footpoints.heights, footpoints.distances
+    past = np.sqrt(np.sum((footpoints.miss - heights[:, None] * footpoints.normals) ** 2, axis=-1))
     index, roots = around.index, np.sqrt(weights)
     # a median of k neighbours has about 1 / k of the variance
     spread_out = np.sqrt(1.0 / weights + np.mean(1.0 / weights[index], axis=1) / index.shape[1])
@@ -124,18 +119,21 @@ def outliers_of(
     usual = median_deviation(roots * distances)
     chance = 1.0 + CHANCE_EXCESS / np.sqrt(len(heights))
     misfit = float(np.sqrt(max(usual**2 - (chance * noise) ** 2, 0.0)))
-    near, site = _surroundings(around)
+    # the points around each of some sites, and the site of every point
+    sites = even_subset(around.places, max(1, LOCAL_OVERLAP * len(heights) // LOCAL_POINTS))
+    near = cKDTree(around.places).query(around.places[sites], k=min(LOCAL_POINTS, len(heights)))[1]
+    near, site = near.reshape(len(sites), -1), cKDTree(around.places[sites]).query(around.places)[1]
     level = np.maximum(noise, DEVIATION_OVER_QUARTILE * np.quantile(deviations[near], 0.25, axis=1)[site]) / roots
     edge = (footpoints.u < EDGE_BAND) | (footpoints.u > 1.0 - EDGE_BAND)
-    exact = EXACT * around.extent
     # a misfit of the design is told from outliers by going on from point to point
     matched = misfit < MATCHED * noise
     local = np.full(len(heights), misfit)
     if not matched and footpoints.points.shape[1] == 2:
         # on a blade points of an end face may be most of those around
-        local = np.maximum(misfit, DEVIATION_OVER_MEDIAN * _median(roots * distances, near)[site])
+        usual_near = np.median((roots * distances)[near[:, : LOCAL_POINTS // 2]], axis=1)
+        local = np.maximum(misfit, DEVIATION_OVER_MEDIAN * usual_near[site])
     least = np.hypot(OUTLYING_NOISE * level, np.where(edge, OUTLYING_MISFIT_AT_EDGES, OUTLYING_MISFIT) * local)
-    least = np.maximum(least, exact)
+    least = np.maximum(least, EXACT * around.extent)
     far = distances > least
     if not np.any(far):
         return far
@@ -164,18 +162,6 @@ def _short_of_ends(past: NDArray[np.bool_], level: NDArray[np.bool_], footpoints
     return wrong
 
 
-def _surroundings(around: Neighbourhood) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """The points (m, k) around each of m sites, and the site (n,) of every point."""
-    sites = even_subset(around.places, max(1, LOCAL_OVERLAP * len(around.places) // LOCAL_POINTS))
-    near = cKDTree(around.places).query(around.places[sites], k=min(LOCAL_POINTS, len(around.places)))[1]
-    return near.reshape(len(sites), -1), cKDTree(around.places[sites]).query(around.places)[1]
-
-
-def _median(values: Reals, near: NDArray[np.intp]) -> Reals:
-    """The median (m,) of values (n,) of the nearer half of the points (m, k) around sites."""
-    return np.asarray(np.median(values[near[:, : LOCAL_POINTS // 2]], axis=1))
-
-
 def _cut_off(
     heights: Reals, level: Reals, beyond: NDArray[np.bool_], largest: int, around: Neighbourhood
 ) -> NDArray[np.bool_]:
@@ -191,16 +177,13 @@ def _cut_off(
     label = groups(linked, index)
     size = np.bincount(label)[label]
     core = np.flatnonzero(size > largest if np.any(size > largest) else size == size.max())
-    separate = np.flatnonzero(~np.isin(np.arange(len(heights)), core))
+    separate = np.setdiff1d(np.arange(len(heights)), core)
     if len(separate) == 0:
         return np.zeros(len(heights), dtype=bool)
     _, near = cKDTree(around.places[core]).query(around.places[separate], k=min(CORE_NEIGHBOURS, len(core)))
     near = core[near.reshape(len(separate), -1)]
     reached = np.any(steps(np.broadcast_to(separate[:, None], near.shape), near), axis=1)
-    joined = np.zeros(len(heights), dtype=bool)
-    joined[label[core]] = True
-    joined[label[separate[reached]]] = True
-    return ~joined[label]
+    return ~np.isin(label, label[np.concatenate([core, separate[reached]])])
 
 
 def groups(linked: NDArray[np.bool_], index: NDArray[np.intp]) -> NDArray[np.intp]:
@@ -239,9 +222,7 @@ def doubted_outliers(
 
     They crowd at an edge, or where the misfit is `systematic` have others beside them, which scattered ones hardly do.
     """
-    doubted = np.zeros_like(outliers)
-    for crowded in crowded_at_edges(outliers, footpoints).values():
-        doubted |= crowded
+    doubted = np.any([np.zeros_like(outliers), *crowded_at_edges(outliers, footpoints).values()], axis=0)
     if systematic:
         doubted |= outliers & (np.sum(outliers[neighbourhood_of(points, footpoints).index], axis=1) >= CROWD)
     return doubted
@@ -280,17 +261,14 @@ def noise_of(
     Weights (n,) are inverse variances relative to each other. A point of weight 0 tells nothing of the noise, and is an
     outlier where it lies further off than every inlier.
     """
-    if weights is not None and not np.all(weights > 0.0):
-        return _noise_of_weighted(points, footpoints, weights, allow_outliers=allow_outliers)
-    if len(points) > COMPARED_POINTS:
-        return _noise_of_many(points, footpoints, weights, allow_outliers=allow_outliers)
+    rows = np.arange(len(points)) if weights is None else np.flatnonzero(weights > 0.0)
+    if len(rows) == len(points):
+        rows = random_subset(len(points), COMPARED_POINTS)
+    if len(rows) < len(points):
+        return _noise_of_some(points, footpoints, weights, rows, allow_outliers=allow_outliers)
     weights = np.ones(len(points)) if weights is None else weights / np.mean(weights)
-    heights, distances = footpoints.heights, footpoints.distances
-    around = neighbourhood_of(points, footpoints)
-    inliers = np.ones(len(points), dtype=bool)
-    if allow_outliers:
-        past = np.sqrt(np.sum((footpoints.miss - heights[:, None] * footpoints.normals) ** 2, axis=-1))
-        inliers = ~outliers_of(heights, past, distances, weights, footpoints, around)
+    heights, around = footpoints.heights, neighbourhood_of(points, footpoints)
+    inliers = ~_outliers_of(footpoints, weights, around) if allow_outliers else np.ones(len(points), dtype=bool)
     index = around.index
     kept = inliers & inliers[index].all(axis=1)
     kept = kept if np.any(kept) else np.ones(len(points), dtype=bool)
@@ -328,32 +306,24 @@ def _linear_shares(places: Reals, beside: Reals, normals: Reals) -> Reals:
     return np.asarray(np.linalg.pinv(rows, rcond=FLAT)[:, 0])
 
 
-def _noise_of_many(
-    points: Reals, footpoints: Footpoints, weights: Reals | None, *, allow_outliers: bool
+def _noise_of_some(
+    points: Reals, footpoints: Footpoints, weights: Reals | None, rows: NDArray[np.intp], *, allow_outliers: bool
 ) -> NoiseEstimate:
-    """The noise estimate of some of the points; the others are inliers where they are level with one beside them."""
-    rows = random_subset(len(points), COMPARED_POINTS)
+    """The noise estimate of the points in `rows`, and which of the others are inliers by it.
+
+    Those are level with an inlier beside them, or where they have no weight no further off than every inlier.
+    """
     part = footpoints.part(rows)
     found = noise_of(points[rows], part, None if weights is None else weights[rows], allow_outliers=allow_outliers)
-    inliers = np.ones(len(points), dtype=bool)
-    if allow_outliers:
-        kept = part.part(found.inliers)
+    if not allow_outliers:
+        return replace(found, inliers=np.ones(len(points), dtype=bool))
+    kept = part.part(found.inliers)
+    if weights is not None and not np.all(weights > 0.0):
+        inliers = footpoints.distances <= np.max(kept.distances)
+    else:
         beside = cKDTree(kept.points).query(footpoints.points)[1]
         level = np.hypot(found.noise, found.noise) if weights is None else found.noise * np.sqrt(1.0 + 1.0 / weights)
         near = EXACT * float(np.max(np.ptp(points, axis=0)))
-        step = footpoints.distances - kept.distances[beside]
-        inliers = step <= OUTLYING_NOISE * level + near
-        inliers[rows] = found.inliers
-    return replace(found, inliers=inliers)
-
-
-def _noise_of_weighted(points: Reals, footpoints: Footpoints, weights: Reals, *, allow_outliers: bool) -> NoiseEstimate:
-    """The noise estimate of the points that have a weight, and which of the others are inliers."""
-    rows = weights > 0.0
-    part = footpoints.part(rows)
-    found = noise_of(points[rows], part, weights[rows], allow_outliers=allow_outliers)
-    inliers = np.ones(len(points), dtype=bool)
+        inliers = footpoints.distances - kept.distances[beside] <= OUTLYING_NOISE * level + near
     inliers[rows] = found.inliers
-    if allow_outliers:
-        inliers[~rows] = footpoints.distances[~rows] <= np.max(part.distances[found.inliers])
     return replace(found, inliers=inliers)
