@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -67,19 +68,16 @@ twice change nothing measured (design/matching_constants.md)."""
 
 RangeRule = Callable[[float, float], ParameterRange]
 """from a parameter's value and the largest magnitude in its field"""
-RANGE_BY_ENDING: tuple[tuple[str, RangeRule], ...] = (
+RANGE_BY_ENDING: tuple[tuple[str | tuple[str, ...], RangeRule], ...] = (
     ("radius", lambda _, largest: ParameterRange(max(0.5 * largest, 1e-3), SMALLEST_LENGTH)),
-    ("half_thickness", lambda _, largest: ParameterRange(max(0.5 * largest, 0.01), SMALLEST_LENGTH)),
     ("thickness", lambda _, largest: ParameterRange(max(0.5 * largest, 0.01), SMALLEST_LENGTH)),
-    ("stretch", lambda *_: ParameterRange(0.3, 0.05)),
-    ("scale", lambda *_: ParameterRange(0.3, 0.05)),
+    (("stretch", "scale"), lambda *_: ParameterRange(0.3, 0.05)),
     ("index", lambda *_: ParameterRange(1.0, 0.05)),
     ("skew", lambda *_: ParameterRange(0.2, -0.95, 0.95)),
     ("ratio", lambda *_: ParameterRange(0.5, 0.05)),
     ("places", lambda *_: ParameterRange(0.05, 1e-3, 1.0 - 1e-3)),
     ("weights", lambda value, _: ParameterRange(0.5 * value, 1e-2 * value, 1e2 * value)),
-    ("tangent_in", lambda value, _: ParameterRange(float(np.clip(0.5 * value, 2e-3, 0.05)), 1e-3)),
-    ("tangent_out", lambda value, _: ParameterRange(float(np.clip(0.5 * value, 2e-3, 0.05)), 1e-3)),
+    (("tangent_in", "tangent_out"), lambda value, _: ParameterRange(float(np.clip(0.5 * value, 2e-3, 0.05)), 1e-3)),
     ("", lambda _, largest: ParameterRange(max(0.3 * largest, 0.02))),
 )
 """of other fields of a part by the end of their name; the first ending that matches counts"""
@@ -124,8 +122,10 @@ def scales_of(
     kinds = _ranges(design, paths, chord)
     size, low, high = (np.array([getattr(kind, name) for kind in kinds]) for name in ("size", "low", "high"))
     for pattern, (least, most) in (bounds or {}).items():
-        for i in _matched_indices(pattern, paths):
-            low[i], high[i] = max(low[i], least), min(high[i], most)
+        # a structure may have no such parameter
+        with suppress(DesignError):
+            for i in map(paths.index, matching(pattern, paths)):
+                low[i], high[i] = max(low[i], least), min(high[i], most)
     return Scales(size=size, low=low, high=high)
 
 
@@ -146,37 +146,19 @@ def check_bounds(design: Design, paths: Sequence[str], bounds: Mapping[str, tupl
                 )
 
 
-def _matched_indices(pattern: str, paths: Sequence[str]) -> list[int]:
-    """Indices of the paths that a pattern matches: none where a structure has no such parameter."""
-    try:
-        found = set(matching(pattern, paths))
-    except DesignError:
-        return []
-    return [place for place, path in enumerate(paths) if path in found]
-
-
 def _ranges(design: Design, paths: Sequence[str], chord: float) -> list[ParameterRange]:
-    """Ranges of parameters; a law's sizes follow from the values of all of it."""
-    values = {path: float(value) for path, value in design.parameters().items()}
-    fields: dict[str, list[float]] = {}
+    """Ranges of parameters; a law's sizes follow from the largest magnitude in all of it."""
+    values, largest = design.parameters(), dict[str, float]()
     for path, value in values.items():
-        fields.setdefault(_field(path), []).append(value)
-    size = {name: max(among) for name, among in fields.items()}
-    extent = {name: float(np.sqrt(max(value**2 for value in among))) for name, among in fields.items()}
-    return [
-        part_range(design, path, values[path], extent[_field(path)])
-        if path.startswith("section.")
-        else _range(design, path, values[path], size[_field(path)], chord)
-        for path in paths
-    ]
-
-
-def _field(path: str) -> str:
-    return path.partition("[")[0]
+        name = path.partition("[")[0]
+        largest[name] = max(largest.get(name, 0.0), abs(float(value)))
+    return [_range(design, path, float(values[path]), largest[path.partition("[")[0]], chord) for path in paths]
 
 
 def _range(design: Design, path: str, value: float, largest: float, chord: float) -> ParameterRange:
-    field = _field(path)
+    """The range of a parameter at a path; `largest` is the largest magnitude in its field."""
+    if path.startswith("section."):
+        return part_range(design, path, value, largest)
     length = chord / UNITS[getattr(design, "length_unit")]  # noqa: B009 - a field of every family, not of the base
     kinds = {
         "stagger": ParameterRange(5.0, -LARGEST_ANGLE, LARGEST_ANGLE),
@@ -191,4 +173,4 @@ def _range(design: Design, path: str, value: float, largest: float, chord: float
         **dict.fromkeys(("channel", "flow_path.", "leading_edge.", "trailing_edge."), ParameterRange(0.02 * length)),
         "stacking.theta": ParameterRange(float(np.degrees(0.05))),
     }
-    return next((kind for name, kind in kinds.items() if field.startswith(name)), ParameterRange(0.05 * length))
+    return next((kind for name, kind in kinds.items() if path.startswith(name)), ParameterRange(0.05 * length))
