@@ -7,9 +7,9 @@ are exact.
 
 import re
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import chain
-from typing import Any
 
 import numpy as np
 
@@ -86,25 +86,21 @@ def regularisation_of(
     spread = np.where([path.startswith(MERIDIANS) for path in paths], CHANNEL_SPREAD, SPREAD_ABOUT_START)
     corners = set[str]() if ends_shown else _corners(start)
     spread = np.where([path.rpartition(".")[0] in corners for path in paths], CORNER_SPREAD, spread)
-    rows, rhs_rows = [np.diag(1.0 / spread)], [np.zeros(len(paths))]
+    rows, rhs = [np.diag(1.0 / spread)], [0.0] * len(paths)
     values = start.parameters()
     index = {path: i for i, path in enumerate(paths)}
-    shared = float(np.sqrt(independent_share))
-    tangents = _tangents(start, TANGENT_SPREAD * shared)
+    tangents = _tangents(start, TANGENT_SPREAD * float(np.sqrt(independent_share)))
     bends = chain(_second_differences(start), _meridional_bends(start))
     for terms, usual, width in chain(bends, _thickness_differences(start), tangents):
-        free = [index[path] for path, _ in terms if path in index]
+        free = {index[path]: factor for path, factor in terms if path in index}
         if not free:
             continue
-        scale = float(np.max(size[free]))
-        row = np.zeros((1, len(paths)))
-        for path, factor in terms:
-            if path in index:
-                row[0, index[path]] += factor * size[index[path]] / (width * scale)
+        row, scale = np.zeros(len(paths)), width * float(np.max(size[[*free]]))
+        for place, factor in free.items():
+            row[place] = factor * size[place] / scale
         rows.append(row)
-        left = usual - sum(factor * values[path] for path, factor in terms)
-        rhs_rows.append(np.array([left / (width * scale)]))
-    return Regularisation(matrix=np.concatenate(rows), rhs=np.concatenate(rhs_rows))
+        rhs.append((usual - sum(factor * values[path] for path, factor in terms)) / scale)
+    return Regularisation(matrix=np.vstack(rows), rhs=np.array(rhs))
 
 
 def _corners(start: Design) -> set[str]:
@@ -118,10 +114,9 @@ def _corners(start: Design) -> set[str]:
 def _second_differences(start: Design) -> Iterator[Row]:
     """Second differences of laws along the span and along the chord."""
     for name in (*SPANWISE, *THICKNESSES, "leading_edge_theta", "leading_edge_y"):
-        grid = paths_of(name, getattr(start, name, None))
-        counts = {len(line) for line in grid}
-        lines = [*grid, *(zip(*grid, strict=True) if len(counts) == 1 else ())]
-        for line in lines:
+        grid = _paths_of(start, name)
+        columns = zip(*grid, strict=True) if len({len(line) for line in grid}) == 1 else ()
+        for line in (*grid, *columns):
             yield from _second_differences_of(line)
     if isinstance(getattr(start, "section", None), Part):
         for line in lines_of(start.section, "section"):  # type: ignore[attr-defined]
@@ -149,7 +144,7 @@ def _meridional_bends(start: Design) -> Iterator[Row]:
 
 
 def _thickness_differences(start: Design) -> Iterator[Row]:
-    above, below = (paths_of(name, getattr(start, name, None)) for name in THICKNESSES)
+    above, below = (_paths_of(start, name) for name in THICKNESSES)
     if [len(row) for row in above] == [len(row) for row in below]:
         for pair in zip(chain(*above), chain(*below), strict=True):
             yield list(zip(pair, (1.0, -1.0), strict=True)), 0.0, CAMBER_SPREAD
@@ -162,16 +157,12 @@ def _tangents(start: Design, spread: float) -> Iterator[Row]:
                 yield [(path, 1.0)], USUAL_TANGENT, spread
 
 
-def paths_of(name: str, law: Any) -> list[list[str]]:
+def _paths_of(start: Design, name: str) -> list[list[str]]:
     """Paths of a law's control points along the span, a list for each control point along the chord."""
-    if law is None:
-        return []
-    chordwise = name in THICKNESSES
-    rows = []
-    for i, entry in enumerate(law if chordwise else (law,)):
-        stem = f"{name}[{i}]" if chordwise else name
-        rows.append(number_paths(entry, stem))
-    return rows
+    law = getattr(start, name, None)
+    if name in THICKNESSES:
+        return [number_paths(entry, f"{name}[{i}]") for i, entry in enumerate(law or ())]
+    return [] if law is None else [number_paths(law, name)]
 
 
 EDGE_SHARE = 0.05
@@ -271,14 +262,14 @@ class MatchProblem(ConstrainedProblem):
         regularisation: Regularisation,
         independent_share: float,
         hint: Footpoints,
-        margin: float = 0.0,
+        margin: float,
     ) -> None:
         self.cloud_residuals, self.model = cloud_residuals, cloud_residuals.model
         self.start, self.paths, self.scales, self.margin = start, tuple(paths), scales, margin
-        self.noise = cloud_residuals.noise
-        self.edge_height_noise = self.noise / float(np.sqrt(independent_share))
+        noise = cloud_residuals.noise
+        self.edge_height_noise = noise / float(np.sqrt(independent_share))
         """noise by which edge heights are weighed: larger where points repeat each other"""
-        self.regularisation = regularisation.scaled(self.noise)
+        self.regularisation = regularisation.scaled(noise)
         self.first = self.values_of(start)
         self.evaluations, self._least = 0, np.inf
         self._hint = hint
@@ -307,21 +298,16 @@ class MatchProblem(ConstrainedProblem):
 
     def state(self, z: Reals) -> PlacedCloud | None:
         """The shape and the cloud's footpoints; None where there is no such shape."""
-        key = z.tobytes()
+        key, placed = z.tobytes(), None
         if self._last[0] != key:
-            self._last = key, self._state(z)
+            self.evaluations += 1
+            with suppress(DesignError):
+                shape = self.model.shape(self.design(z))
+                if shape.finite:
+                    self._hint = nearest_footpoints(self.cloud_residuals.points, shape.sides, self._hint)
+                    placed = PlacedCloud(shape=shape, footpoints=self._hint)
+            self._last = key, placed
         return self._last[1]
-
-    def _state(self, z: Reals) -> PlacedCloud | None:
-        self.evaluations += 1
-        try:
-            shape = self.model.shape(self.design(z))
-        except DesignError:
-            return None
-        if not shape.finite:
-            return None
-        self._hint = nearest_footpoints(self.cloud_residuals.points, shape.sides, self._hint)
-        return PlacedCloud(shape=shape, footpoints=self._hint)
 
     def values(self, z: Reals) -> tuple[Reals, Reals] | None:
         """All residuals (m,), and by how much edge radii exceed the thickness and the channel folds (c,)."""
