@@ -242,14 +242,14 @@ def searched(
     Raises FitError where the start has no shape, and KeyboardInterrupt after it has noted the best design of a round
     that was interrupted.
     """
-    found, rounds_without_gain = _prepared_round(task, start, start, noise), 0
+    found, rounds_without_gain = evaluated(task, start, noise=noise), 0
     task.best_so_far.note(found)
     for number in range(rounds):
         before = found.misfit
         if number and enough(found):
             break
         try:
-            prepared = found if number == 0 else _prepared_round(task, start, found.design, noise, found)
+            prepared = found if number == 0 else evaluated(task, found.design, noise=noise, before=found)
             found = _descended_round(task, prepared, min_reduction)
         except (DesignError, FitError):
             # at finer knots, or in a derivative, the design has no shape: the round before stands
@@ -269,36 +269,12 @@ def searched(
     return found
 
 
-def evaluated(task: Task, design: Design, *, noise: float) -> Match:
-    """A design as it stands before a search; `noise` is the first round's, of the chord.
+def evaluated(task: Task, design: Design, *, noise: float | None, before: Match | None = None) -> Match:
+    """A design as it stands before a round, whose problem begins with the start of the round `before`.
 
-    Raises FitError where it has no shape.
+    `noise` is the round's, of the chord; None takes the misfit. Raises FitError where the design has no shape.
     """
-    return _prepared_round(task, design, design, noise)
-
-
-def without_false_outliers(task: Task, match: Match) -> Match:
-    """A match of the same structure to those outliers too that may be points of the blade, where it takes most of them.
-
-    A nose that is not found leaves its own points out, and what is searched without them never finds it.
-    """
-    inliers, feet, systematic = match.noise_estimate.inliers, match.state.footpoints, has_systematic_misfit(match)
-    doubted = doubted_outliers(~inliers & ~match.ends.on_end_face, task.points, feet, systematic=systematic)
-    if not np.any(doubted):
-        return match
-    every = replace(task.part(np.flatnonzero(inliers | doubted)), allow_outliers=False)
-    try:
-        found = searched(every, match.design, noise=match.rms, rounds=QUICK_ROUNDS + 1, min_reduction=ROUGH_REDUCTION)
-        found = evaluated(task, found.design, noise=found.rms)
-    except FitError:
-        return match
-    return match if np.mean(found.noise_estimate.inliers[doubted]) <= 0.5 else found
-
-
-def _prepared_round(
-    task: Task, start: Design, design: Design, noise: float | None, before: Match | None = None
-) -> Match:
-    """A design with the problem of the next round."""
+    start = design if before is None else before.problem.start
     points, paths = task.points, task.free(start)
     tolerance = float(np.clip(NATIVE_TOLERANCE_OF_NOISE * (noise or 1.0), getattr(design, "tolerance", 1e-6), EXACT))
     try:
@@ -356,13 +332,8 @@ def _descended_round(task: Task, match: Match, min_reduction: float) -> Match:
     """What a descent from a prepared design finds; where it is interrupted, its best design is noted first."""
     problem = match.problem
     try:
-        descent = constrained_minimum(
-            problem,
-            problem.vector(match.design),
-            steps=EVALUATIONS_PER_ROUND,
-            damping=match.damping,
-            min_reduction=min_reduction,
-        )
+        start, steps = problem.vector(match.design), EVALUATIONS_PER_ROUND
+        descent = constrained_minimum(problem, start, steps=steps, damping=match.damping, min_reduction=min_reduction)
     except KeyboardInterrupt:
         task.best_so_far.note(_moved(match, problem.best))
         raise
@@ -373,10 +344,23 @@ def _moved(match: Match, z: Reals) -> Match:
     """The match at other variables of its problem, or as it is where they describe no shape."""
     problem = match.problem
     state = problem.state(z) or match.state
-    return replace(
-        match,
-        design=state.shape.design,
-        state=state,
-        evaluations=match.evaluations + problem.evaluations,
-        converged=False,
-    )
+    evaluations = match.evaluations + problem.evaluations
+    return replace(match, design=state.shape.design, state=state, evaluations=evaluations)
+
+
+def without_false_outliers(task: Task, match: Match) -> Match:
+    """A match of the same structure to those outliers too that may be points of the blade, where it takes most of them.
+
+    A nose that is not found leaves its own points out, and what is searched without them never finds it.
+    """
+    inliers, feet, systematic = match.noise_estimate.inliers, match.state.footpoints, has_systematic_misfit(match)
+    doubted = doubted_outliers(~inliers & ~match.ends.on_end_face, task.points, feet, systematic=systematic)
+    if not np.any(doubted):
+        return match
+    every = replace(task.part(np.flatnonzero(inliers | doubted)), allow_outliers=False)
+    try:
+        found = searched(every, match.design, noise=match.rms, rounds=QUICK_ROUNDS + 1, min_reduction=ROUGH_REDUCTION)
+        found = evaluated(task, found.design, noise=found.rms)
+    except FitError:
+        return match
+    return match if np.mean(found.noise_estimate.inliers[doubted]) <= 0.5 else found
