@@ -97,16 +97,14 @@ def constrained_minimum(
     found = problem.values(z)
     if found is None:
         return ConstrainedMinimum(z=z, converged=False, damping=damping)
-    residuals, constrained = found
     penalty, growth, gain, done = 0.0, 2.0, 1.0, 1
     linearised = problem.derivatives(z)
     while done < steps and linearised is not None:
-        slopes, constraint_slopes = linearised
+        (residuals, constrained), (slopes, constraint_slopes) = found, linearised
         matrix, reduced = _factored(slopes)
         rhs = reduced(-residuals)
         scale = float(np.max(np.sum(slopes**2, axis=0), initial=1e-300))
         sizes = np.sqrt(np.sum(slopes**2, axis=0) + damping * scale)
-        moved = False
         while done < steps:
             within = (
                 damping * scale,
@@ -117,14 +115,9 @@ def constrained_minimum(
             )
             step, largest = _step(matrix, rhs, *within)
             penalty = max(penalty, PENALTY * largest)
-            before = float(residuals @ residuals) + penalty * float(np.sum(np.maximum(constrained, 0.0)))
-            linear = rhs - matrix @ step
-            predicted = (
-                float(rhs @ rhs)
-                - float(linear @ linear)
-                + penalty
-                * float(np.sum(np.maximum(constrained, 0.0) - np.maximum(constrained + constraint_slopes @ step, 0.0)))
-            )
+            before, linear = _merit(found, penalty), rhs - matrix @ step
+            eased = np.maximum(constrained, 0.0) - np.maximum(constrained + constraint_slopes @ step, 0.0)
+            predicted = float(rhs @ rhs) - float(linear @ linear) + penalty * float(np.sum(eased))
             if not predicted > min_reduction * before:
                 return ConstrainedMinimum(z=z, converged=True, damping=damping)
             bend = _second_derivative(problem, z, step, residuals, slopes) if accelerated and gain < GOOD_GAIN else None
@@ -135,24 +128,28 @@ def constrained_minimum(
             trial = np.clip(z + step, low, high)
             fresh = problem.values(trial)
             done += 1
-            after = np.inf
-            if fresh is not None:
-                after = float(fresh[0] @ fresh[0]) + penalty * float(np.sum(np.maximum(fresh[1], 0.0)))
+            after = np.inf if fresh is None else _merit(fresh, penalty)
             gain = (before - after) / predicted
             ends = gain > GOOD_GAIN and max(1.0 - gain, EXPECTED_REST) * predicted < min_reduction * after
             following = problem.derivatives(trial) if gain > 1e-3 and done < steps and not ends else None
             if gain > 1e-3 and fresh is not None and (ends or done >= steps or following is not None):
-                z, (residuals, constrained), linearised = trial, fresh, following
+                z, found, linearised = trial, fresh, following
                 damping *= max(LARGEST_EASING, 1.0 - (2.0 * min(gain, 1.0) - 1.0) ** 3)
-                damping, growth, moved = max(damping, 1e-16), 2.0, True
+                damping, growth = max(damping, 1e-16), 2.0
                 if ends:
                     return ConstrainedMinimum(z=z, converged=True, damping=damping)
                 break
             damping *= growth
             growth *= 2.0
-        if not moved:
+        else:
             break
     return ConstrainedMinimum(z=z, converged=False, damping=damping)
+
+
+def _merit(values: tuple[Reals, Reals], penalty: float) -> float:
+    """The sum of squared residuals (m,) and the penalty of the constrained values (c,) that are positive."""
+    residuals, constrained = values
+    return float(residuals @ residuals) + penalty * float(np.sum(np.maximum(constrained, 0.0)))
 
 
 def _factored(slopes: Reals) -> tuple[Reals, Callable[[Reals], Reals]]:
