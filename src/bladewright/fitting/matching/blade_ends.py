@@ -25,26 +25,22 @@ from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.surface import Surface
 
 ROW_BAND = 0.015
-"""distance from an end, in v, within which a point may belong to the row that shows it: half and twice change nothing
-measured (design/matching_constants.md)."""
+"""distance from an end, in v, within which a point may belong to its row (design/matching_constants.md)."""
 ROW_PARTS, ROW_SHARE = 20, 0.5
-"""parts of the chord in which the outermost points are looked for, and share of them that must have some at the end: a
-cloud of a part of the span has none, and with half of the share an end that is wrong all along, of a start laid on its
-cloud, was drawn to the row before its own (`ROW_SHARE`) (design/matching.md)"""
+"""parts of the chord in which the outermost points are looked for, and share of them that must have some at the end
+(`ROW_SHARE`): a cloud of a part of the span has none (design/matching.md)"""
 FACE_BAND, FACE_DEPTH, FACE_NEARER_WALL = 0.1, 5.0, 0.3
 """a point of an end face has its footpoint within this distance of the end, in v, lies `FACE_DEPTH` usual distances
 inside the sides, and is nearer to the wall than to the sides by the ratio `FACE_NEARER_WALL`
 (design/matching_constants.md)."""
 FACE_OUTLIERS, FACE_OUTLIERS_NEARER_WALL = 20, 0.1
 """outliers on an end face belong to it where there are so many, and half of them are nearer to the wall than to the
-sides by the ratio `FACE_OUTLIERS_NEARER_WALL`. Half and twice change nothing measured
-(design/matching_constants.md)."""
+sides by the ratio `FACE_OUTLIERS_NEARER_WALL` (design/matching_constants.md)."""
 DEEPEST_FACE_POINT = 0.2
 """depth of the deepest point of an end face, of the half thickness of the blade: shallower ones lie beside an edge that
-is not yet found. Half and twice change nothing measured (design/matching_constants.md)."""
+is not yet found (design/matching_constants.md)."""
 PAST_END_BAND = 0.05
-"""distance from an end, in v, within which a point may come to lie past it while the design changes. Half and twice
-change nothing measured (design/matching_constants.md)."""
+"""distance from an end, in v, within which a point may come to lie past it (design/matching_constants.md)."""
 MOST_WALL_POINTS = 400
 """points of a wall beside the blade that count: as many as rows at an end have. With half four parameters of Aachen's
 stator are not determined, not one; twice changes nothing (design/matching_constants.md)."""
@@ -52,12 +48,10 @@ FEWEST_ROW_POINTS = 5
 """points that a row at an end needs. Half and twice change nothing measured (design/matching_constants.md)."""
 ROW_WIDTH, ROW_LEAST_WIDTH = 4.5, 1e-6
 """a point belongs to the row at an end within so many standard deviations of its middle, but within `ROW_LEAST_WIDTH`
-of the places' extent in any case: the sides themselves are no nearer to the walls. Half and twice change nothing
-measured (design/matching_constants.md)."""
+of the places' extent in any case: the sides themselves are no nearer to the walls (design/matching_constants.md)."""
 ROW_DEGREE, ROW_TURNS, ROW_SETTLING_TURNS = 6, 30, 3
 """highest degree of the polynomial by which a row may be off the wall; it is found in `ROW_TURNS` reweighted turns as a
-quantile, then in `ROW_SETTLING_TURNS` by least squares. Half and twice change nothing measured
-(design/matching_constants.md)."""
+quantile, then in `ROW_SETTLING_TURNS` by least squares (design/matching_constants.md)."""
 OUTER_QUANTILE = 0.2
 """share of the places at an end that lie outside the law that is first sought: a row is the outermost, and beside it
 lie points of the sides. Half and twice change nothing measured (design/matching_constants.md)."""
@@ -246,14 +240,12 @@ SPANWISE_WEIGHT = 0.2
 """factor of distances along the edge while the nearest point is sought: a cloud may have few rows along the span. Half
 and twice change nothing measured (design/matching_constants.md)."""
 NEIGHBOURS = 6
-"""points beside an edge whose distances from each other are looked at. Half and twice change nothing measured
-(design/matching_constants.md)."""
+"""points beside an edge whose distances from each other are looked at (design/matching_constants.md)."""
 ALLOWED_SPACINGS, ALLOWED_SPACINGS_EXACT = 1.5, {2: 15.0, 3: 5.2}
 """allowed overhang in spacings of the points beside the edge, and in a cloud that is exact (`ALLOWED_SPACINGS_EXACT`),
 by dimension, where the true edge must cost nothing even by chance: of points at random in space one cloud in 1,000 has
-none within 3.4 spacings of one of 36 places on edges (a Poisson process), and rows are less even. With 1.5 it had cost
-2.4e-3 of the chord on an impeller and on Rotor 67; with 15 a pump impeller stood 8 mm out. With 5.2 a compressor's
-section is not found, which begins far out of its points (design/matching.md)."""
+none within 3.4 spacings of one of 36 places on edges (a Poisson process), and rows are less even. A section may begin
+far out of its points (design/matching.md)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

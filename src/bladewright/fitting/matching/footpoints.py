@@ -27,8 +27,7 @@ an outlier. Of a million noisy points 38,000 are deep, which took 47 s; of 4,000
 descents (design/matching.md)."""
 FACING = 0.999
 """cosine of the angle from which a normal faces a point: smooth sides do to rounding, and corners that turn by less
-than 3 deg leave a point a thousandth of its distance too near. Half and twice change nothing measured
-(design/matching_constants.md)."""
+than 3 deg leave a point a thousandth of its distance too near (design/matching_constants.md)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

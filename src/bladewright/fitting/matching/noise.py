@@ -48,12 +48,10 @@ LARGEST_GROUP, SMALL_GROUP = 0.05, 20
 change nothing measured (design/matching_constants.md)."""
 END_BAND, WRONG_END_SHARE = 0.02, 0.2
 """distance from an end of the blade, in v, within which points show it; where more than `WRONG_END_SHARE` of them lie
-past the end, the end is wrong and not the points. Half and twice change nothing measured
-(design/matching_constants.md)."""
+past the end, the end is wrong and not the points (design/matching_constants.md)."""
 PAST_END_BY_CHANCE, LEVEL_SLOPE = 1, 0.05
 """points level with the sides that may lie past an end by chance, and height per length past it up to which a point is
-level (`LEVEL_SLOPE`): more show that the end is wrong. Without, an impeller with outliers is 3.3e-3 of the chord off,
-not 1.3e-4 (design/matching.md)."""
+level (`LEVEL_SLOPE`): more show that the end is wrong (design/matching.md)."""
 LARGEST_OUTLIER_SHARE = 0.15
 """share of outliers from which it is the design that lies off, and all points count as inliers: half and twice change
 nothing measured (design/matching_constants.md)."""

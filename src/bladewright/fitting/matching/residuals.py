@@ -35,8 +35,7 @@ CHANNEL_SPREAD = 1.0
 (design/matching_constants.md)."""
 CORNER_SPREAD = 0.25
 """the same of the channel's corners: where no row of points shows an end of the blade, the outline does, within half a
-percent of the chord. With 0.5 a corner of the radial turbine ends 9 % of the chord outside its points; the radial
-diffuser depends on it as well (design/matching_constants.md)."""
+percent of the chord (design/matching_constants.md)."""
 MERIDIANS = ("channel.", "flow_path.", "leading_edge.", "trailing_edge.")
 """beginnings of the paths of those, and of the edge curves and walls of blades from sections."""
 POINT_PATH = re.compile(r"(.*)\[\d+\](\.[xr])")

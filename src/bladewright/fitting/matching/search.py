@@ -37,8 +37,8 @@ ROUGH_REDUCTION = 0.01
 intermediate structures are not needed (design/matching_constants.md)."""
 REGULARISATION_DECAY = 0.5
 """ratio of the noise that a fading regularisation is for to that of the round before, at most (iteratively regularised
-Gauss-Newton: Bakushinskii 1992). Held at the misfit, which it causes itself, it kept rich matches 7e-3 of chord off;
-where few control points cause the misfit, it leaves them wild, and predictions about them poor (design/matching.md)."""
+Gauss-Newton: Bakushinskii 1992). Held at the misfit, which it causes itself, it kept rich matches 7e-3 of chord off
+(design/matching.md)."""
 QUICK_ROUNDS = 2
 """rounds of a search on the way (design/matching_constants.md); of one on whose misfit a decision rests one more"""
 FAST_RATIO = 0.5
@@ -49,8 +49,7 @@ EXACT_MISFIT = 3e-14
 nothing measured (design/matching_constants.md)."""
 NATIVE_TOLERANCE_OF_NOISE = 0.1
 """tolerance of the native surfaces in a round, of the noise: a tenth adds less than 1 % to the distances. Knots coarser
-than the misfit needs had lost matches that were found. Half and twice change nothing measured
-(design/matching_constants.md)."""
+than the misfit needs had lost matches that were found (design/matching_constants.md)."""
 EDGE_RADIUS_MARGIN = {2: 2e-6, 3: 2e-5}
 """margin by which the control point that sets an edge's radius is held below the thickness beside it, of the section's
 extent, by dimension: a blade is refused between its stations too."""
@@ -185,8 +184,7 @@ class Match:
 
 
 NOISE_CORRELATION = 0.15
-"""share of the misfit that neighbours have in common below which the misfit is noise: half and twice change nothing
-measured (design/matching_constants.md)."""
+"""share of the misfit that neighbours have in common below which the misfit is noise (design/matching_constants.md)."""
 FAR_OFF = 3.0
 """standard deviations of the noise, by the median, beyond which the root mean square of a misfit is none of it: half
 and twice change nothing measured (design/matching_constants.md)."""
