@@ -1,6 +1,6 @@
 """What a cloud shows of the ends and the edges of a blade: points at hub and shroud, on end faces, and beside edges."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -162,10 +162,7 @@ def blade_ends_of(
         # points of the sides beside the row would pull the end inwards
         chosen = chosen[aside <= ROW_WIDTH * max(spread, ROW_LEAST_WIDTH * float(np.ptp(places)))]
         walls[name] = WallPoints(name=name, places=places[chosen], spread=spread, rows=chosen)
-    nearer = [_nearer_wall(each, exact) for each in beside]
-    for name in set(nearer):
-        own = [each for each, wall in zip(beside, nearer, strict=True) if wall == name]
-        walls[name] = _wall_beside(name, np.concatenate(own), exact)
+    walls |= {wall.name: wall for wall in _walls_beside(beside, exact)}
     near = np.flatnonzero(((footpoints.v < PAST_END_BAND) | (footpoints.v > 1.0 - PAST_END_BAND)) & ~on_end_face)
     return BladeEnds(walls=walls, on_end_face=on_end_face, near=near)
 
@@ -183,21 +180,19 @@ def _outermost(footpoints: Footpoints, rows: NDArray[np.bool_], end: float) -> N
     return rows & (away < np.where(slid < FACE_BAND, slid, 0.0) + ROW_BAND)
 
 
-def _nearer_wall(places: Reals, exact: ExactBlade) -> str:
-    """The name of the wall that most of places (m, 2) beside a blade are nearer to."""
+def _walls_beside(beside: Sequence[Reals], exact: ExactBlade) -> Iterator[WallPoints]:
+    """The places (m, 2) beside a blade between its edges, each set of them with the wall that most are nearer to."""
 
-    def away(name: str) -> float:
-        return float(np.median(np.abs(WallPoints(name=name, places=places).located(exact)[2])))
+    def away(wall: WallPoints) -> float:
+        return float(np.median(np.abs(wall.located(exact)[2])))
 
-    return min(END_PARAMETERS, key=away)
-
-
-def _wall_beside(name: str, places: Reals, exact: ExactBlade) -> WallPoints:
-    """The points of a wall beside a blade that are between its leading and its trailing edge."""
-    t, _, _ = WallPoints(name=name, places=places).located(exact)
-    between = np.flatnonzero((t > 0.0) & (t < 1.0))
-    found = WallPoints(name=name, places=places[between[random_subset(len(between), MOST_WALL_POINTS)]])
-    return replace(found, spread=median_deviation(_off_row(found, exact))) if len(between) else found
+    nearer = [min((WallPoints(name=name, places=each) for name in END_PARAMETERS), key=away) for each in beside]
+    for name in sorted({wall.name for wall in nearer}):
+        places = np.concatenate([wall.places for wall in nearer if wall.name == name])
+        t, _, _ = WallPoints(name=name, places=places).located(exact)
+        between = np.flatnonzero((t > 0.0) & (t < 1.0))
+        found = WallPoints(name=name, places=places[between[random_subset(len(between), MOST_WALL_POINTS)]])
+        yield replace(found, spread=median_deviation(_off_row(found, exact))) if len(between) else found
 
 
 def _off_row(wall: WallPoints, exact: ExactBlade) -> Reals:
