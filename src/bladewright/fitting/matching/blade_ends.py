@@ -141,20 +141,18 @@ def blade_ends_of(
     usual = median_deviation(footpoints.distances[rows])
     walls = {}
     for name, end in END_PARAMETERS.items():
-        inside = np.flatnonzero((np.abs(footpoints.v - end) < FACE_BAND) & (footpoints.heights < -FACE_DEPTH * usual))
+        beside_end = np.abs(footpoints.v - end) < FACE_BAND
+        inside = np.flatnonzero(beside_end & (footpoints.heights < -FACE_DEPTH * usual))
         distances = WallPoints(name=name, places=places[inside]).located(exact)[2]
         share = np.abs(distances) / -footpoints.heights[inside]
         # points of a solid's end faces are outliers to its sides; so are stray points, which stand in no row
         facing = ~rows[inside] & (share < FACE_NEARER_WALL)
-        dense = (
-            np.count_nonzero(facing) >= FACE_OUTLIERS and float(np.median(share[facing])) < FACE_OUTLIERS_NEARER_WALL
-        )
+        dense = np.count_nonzero(facing) >= FACE_OUTLIERS and np.median(share[facing]) < FACE_OUTLIERS_NEARER_WALL
         face = inside[(share < FACE_NEARER_WALL) & (rows[inside] | dense)]
         # beside an edge that is not yet found, points lie a little inside too
         if np.max(-footpoints.heights[face], initial=0.0) > DEEPEST_FACE_POINT * _half_thickness(shape, end):
             on_end_face[face] = True
-        row = _outermost(footpoints, rows & ~on_end_face, end)
-        chosen = np.flatnonzero(row | (on_end_face & (np.abs(footpoints.v - end) < FACE_BAND)))
+        chosen = np.flatnonzero(_outermost(footpoints, rows & ~on_end_face, end) | (on_end_face & beside_end))
         if len(chosen) < FEWEST_ROW_POINTS:
             continue
         aside = _off_row(WallPoints(name=name, places=places[chosen]), exact)

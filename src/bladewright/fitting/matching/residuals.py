@@ -83,7 +83,9 @@ def regularisation_of(
     points that count as independent, as edge heights are.
     """
     spread = np.where([path.startswith(MERIDIANS) for path in paths], CHANNEL_SPREAD, SPREAD_ABOUT_START)
-    corners = set[str]() if ends_shown else _corners(start)
+    channel = None if ends_shown else getattr(start, "channel", None)
+    ends = {} if channel is None else {edge: (0, len(getattr(channel, edge)) - 1) for edge in EDGES}
+    corners = {f"channel.{edge}[{at}]" for edge, both in ends.items() for at in both}
     spread = np.where([path.rpartition(".")[0] in corners for path in paths], CORNER_SPREAD, spread)
     rows, rhs = [np.diag(1.0 / spread)], [0.0] * len(paths)
     values = start.parameters()
@@ -100,14 +102,6 @@ def regularisation_of(
         rows.append(row)
         rhs.append((usual - sum(factor * values[path] for path, factor in terms)) / scale)
     return Regularisation(matrix=np.vstack(rows), rhs=np.array(rhs))
-
-
-def _corners(start: Design) -> set[str]:
-    """Paths of the points in which edges and walls of a channel meet."""
-    channel = getattr(start, "channel", None)
-    if channel is None:
-        return set()
-    return {f"channel.{edge}[{at}]" for edge in EDGES for at in (0, len(getattr(channel, edge)) - 1)}
 
 
 def _second_differences(start: Design) -> Iterator[Row]:
@@ -313,11 +307,10 @@ class MatchProblem(ConstrainedProblem):
         state = self.state(z)
         if state is None:
             return None
-        full = self._edge_height_weight(state.shape) * (
-            np.ravel(state.shape.edge_radius_margins[1]) - USUAL_EDGE_HEIGHT[0]
-        )
-        rows = np.concatenate([self.cloud_residuals.residuals(state), full, self.regularisation.residuals(z)])
-        margins = np.concatenate([np.ravel(state.shape.edge_radius_margins[0]) + self.margin, state.shape.constraints])
+        over, heights = (np.ravel(each) for each in state.shape.edge_radius_margins)
+        unusual = self._edge_height_weight(state.shape) * (heights - USUAL_EDGE_HEIGHT[0])
+        rows = np.concatenate([self.cloud_residuals.residuals(state), unusual, self.regularisation.residuals(z)])
+        margins = np.concatenate([over + self.margin, state.shape.constraints])
         cost = float(rows @ rows) * (1.0 + 1e3 * float(np.max(margins, initial=0.0)))
         if cost < self._least:
             self._least, self.best = cost, np.array(z)
@@ -332,13 +325,13 @@ class MatchProblem(ConstrainedProblem):
         if state is None:
             return None
         try:
-            edge_radius_margins = self.model.edge_radius_margin_rates(state.shape, self.paths)
-            margins, full = (edge_radius_margins[:, i].reshape(len(self.paths), -1).T for i in (0, 1))
-            margins = np.concatenate([margins, self.model.constraint_rates(state.shape, self.paths).T])
+            edges = self.model.edge_radius_margin_rates(state.shape, self.paths)
+            over, heights = (edges[:, i].reshape(len(self.paths), -1).T for i in (0, 1))
+            margins = np.concatenate([over, self.model.constraint_rates(state.shape, self.paths).T])
             slopes = self.cloud_residuals.slopes(state, self.paths)
         except DesignError:
             return None
-        rows = np.concatenate([slopes, self._edge_height_weight(state.shape) * full])
+        rows = np.concatenate([slopes, self._edge_height_weight(state.shape) * heights])
         return np.concatenate([rows * self.scales.size, self.regularisation.matrix]), margins * self.scales.size
 
     def _edge_height_weight(self, shape: ModelShape) -> float:
