@@ -12,7 +12,7 @@ from bladewright.fitting.families.section_shape import section_shape
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching.scales import scales_of
-from bladewright.fitting.models.blunt_edges import closed_sides
+from bladewright.fitting.models.blunt_edges import sides_of
 from bladewright.fitting.models.model import model_of
 from machines.meanlines import BLUNT, on_meanline
 from machines.sections import EXAMPLES
@@ -39,7 +39,7 @@ def built(name):
 def cloud(name, count=150, noise=0.0):
     """Points of a section, those of its faces among them [m]."""
     random = np.random.default_rng(7)
-    points = np.concatenate([side(random.random(count)) for side in closed_sides(built(name))])
+    points = np.concatenate([side(random.random(count)) for side in sides_of(built(name))])
     return random.permutation(points + noise * random.normal(size=points.shape))
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footpoints
-from bladewright.fitting.models.blunt_edges import closed_sides, sides_of
+from bladewright.fitting.models.blunt_edges import sides_of
 from bladewright.nurbs.closest import Descents, closest_on_curve, closest_on_surface
 from machines import example
 from machines.sections import EXAMPLES
@@ -136,7 +136,7 @@ def test_past_an_end_the_miss_points_away_from_the_blade():
 
 @pytest.mark.parametrize("name", ["camber-angle-blunt", "double-circular-arc-sharp"])
 def test_a_point_ahead_of_a_corner_is_as_high_as_it_is_far(name):
-    on = closed_sides(EXAMPLES[name].design.build())
+    on = sides_of(EXAMPLES[name].design.build())
     # along the sides ahead of their last corner, so far from the sides' own normals
     corner = 0.98 if name.endswith("blunt") else 1.0
     ends, before = (np.concatenate([side(np.array([at])) for side in on]) for at in (corner, corner - 0.03))

@@ -11,7 +11,7 @@ from bladewright.fitting.free_parameters import EDGES
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS, WallPoints, blade_ends_of
 from bladewright.fitting.matching.footpoints import EDGE_PARAMETERS, Footpoints, nearest_footpoints
 from bladewright.fitting.matching.noise import EDGE_BAND, NoiseEstimate, noise_of
-from bladewright.fitting.models.blunt_edges import edges_of, on_sides, sides_of
+from bladewright.fitting.models.blunt_edges import blunt_edges_of, on_sides, sides_of
 from bladewright.fitting.models.model import ModelShape
 from bladewright.numerics.robust import median_deviation
 from bladewright.nurbs.basis import Reals
@@ -100,9 +100,8 @@ def measured(
     deviations = np.where(footpoints.heights < 0.0, -1.0, 1.0) * off
     places = np.array(["upper", "lower"], dtype="<U20")[footpoints.side]
     near_edges = [footpoints.u < EDGE_BAND, footpoints.u > 1.0 - EDGE_BAND]
-    if "blunt" in edges_of(built):
-        footpoints, on_face = on_sides(footpoints, edges_of(built))
-        places = np.select([on_face < 0, on_face > 0], EDGES, places)
+    footpoints, on_face = on_sides(footpoints, blunt_edges_of(built))
+    places = np.select([on_face < 0, on_face > 0], EDGES, places)
     places = np.where(set_aside == "", places, set_aside)
     past_end = np.any(footpoints.beyond != 0.0, axis=1) & (
         np.abs(np.sum(footpoints.miss * footpoints.beyond, axis=1)) > np.abs(footpoints.heights)

@@ -3,7 +3,7 @@
 A side and half a face are one curve, or surface, with a corner, so that a point's nearest place may lie on either.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.special import comb
 
 from bladewright.blade.native.blade import Blade
+from bladewright.fitting.free_parameters import EDGES
 from bladewright.fitting.matching.footpoints import Footpoints
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
@@ -35,17 +36,12 @@ def closed_knots(knots: Reals, degree: int, blunt: BluntEdges) -> Reals:
 
 def closed_nets(upper: Array, lower: Array, degree: int, blunt: BluntEdges) -> tuple[Array, Array]:
     """Control points (..., n, d) of both sides with half a face at their blunt edges."""
+    steps = (np.arange(1, degree + 1) / degree)[:, None]
     found = []
     for side, other in ((upper, lower), (lower, upper)):
-        parts = [side]
-        for end, is_blunt in enumerate(blunt):
-            if is_blunt:
-                at = (0, -1)[end]
-                corner = side[..., at, :][..., None, :]
-                middle = 0.5 * (corner + other[..., at, :][..., None, :])
-                steps = (np.arange(1, degree + 1) / degree)[:, None]
-                face = corner + steps * (middle - corner)
-                parts = [face[..., ::-1, :], *parts] if end == 0 else [*parts, face]
+        corners = [(side[..., [at], :], other[..., [at], :]) for at in (0, -1)]
+        first, last = (corner + steps * (0.5 * (corner + across) - corner) for corner, across in corners)
+        parts = [*[first[..., ::-1, :]] * blunt[0], side, *[last] * blunt[1]]
         found.append(np.concatenate(parts, axis=-2))
     return found[0], found[1]
 
@@ -78,24 +74,10 @@ def _first_half(net: Reals) -> Reals:
 
 def sides_of(built: Blade | Section) -> tuple[Curve, Curve] | tuple[Surface, Surface]:
     """The sides of what is built with the halves of the faces of its blunt edges."""
-    if isinstance(built, Section):
-        return closed_sides(built)
-    faces = {name: built.surfaces[name] for name in ("leading_edge", "trailing_edge") if name in built.surfaces}
-    upper, lower = built.sides
-    return closed_with(upper, lower, {name: face for name, face in faces.items() if isinstance(face, Surface)})
-
-
-def edges_of(built: Blade | Section) -> tuple[str, str]:
-    """How the sides meet at the leading and at the trailing edge."""
-    if isinstance(built, Section):
-        return built.edges
-    first, last = ("blunt" if name in built.surfaces else "closed" for name in ("leading_edge", "trailing_edge"))
-    return first, last
-
-
-def closed_sides(section: Section) -> tuple[Curve, Curve]:
-    """The sides of a section with the halves of the faces of its blunt edges."""
-    upper, lower, blunt = section.curves["upper"], section.curves["lower"], blunt_edges_of(section.edges)
+    if isinstance(built, Blade):
+        faces = {name: face for name in EDGES if isinstance(face := built.surfaces.get(name), Surface)}
+        return closed_with(*built.sides, faces)
+    upper, lower, blunt = built.curves["upper"], built.curves["lower"], blunt_edges_of(built)
     if not any(blunt):
         return upper, lower
     knots = closed_knots(upper.knots, upper.degree, blunt)
@@ -104,13 +86,15 @@ def closed_sides(section: Section) -> tuple[Curve, Curve]:
     return first, last
 
 
-def blunt_edges_of(edges: Sequence[str]) -> BluntEdges:
-    """Which of two edges are blunt."""
-    return edges[0] == "blunt", edges[1] == "blunt"
+def blunt_edges_of(built: Blade | Section) -> BluntEdges:
+    """Which edges of what is built are blunt."""
+    if isinstance(built, Blade):
+        return "leading_edge" in built.surfaces, "trailing_edge" in built.surfaces
+    return built.edges[0] == "blunt", built.edges[1] == "blunt"
 
 
-def on_sides(footpoints: Footpoints, edges: Sequence[str]) -> tuple[Footpoints, NDArray[np.intp]]:
+def on_sides(footpoints: Footpoints, blunt: BluntEdges) -> tuple[Footpoints, NDArray[np.intp]]:
     """Footpoints by the sides' own parameters, and -1 for those on the leading face, 1 on the trailing face, 0 else."""
-    low, high = side_bounds(blunt_edges_of(edges))
+    low, high = side_bounds(blunt)
     faces = np.where(footpoints.u < low, -1, np.where(footpoints.u > high, 1, 0))
     return replace(footpoints, u=np.clip((footpoints.u - low) / (high - low), 0.0, 1.0)), faces
