@@ -13,10 +13,11 @@ import numpy as np
 
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.knots import DEGREE, Knots, clamped
-from bladewright.derivatives.complex_step import STEP, Nets, step_tangents, steps_of
+from bladewright.derivatives.complex_step import STEP, step_tangents, steps_of
 from bladewright.designs import Design
 from bladewright.errors import FitError
 from bladewright.fitting.matching.footpoints import Footpoints, Side
+from bladewright.fitting.models.blunt_edges import BluntEdges, closed_nets
 from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array, cross2
 from bladewright.nurbs.basis import Reals
@@ -89,13 +90,21 @@ def model_of(design: Design, tolerance: float | None = None) -> Model:  # noqa: 
     raise FitError(f"a {type(design).__name__} cannot be fitted: give a design of the unified family")
 
 
-def place_rates(on: Side, rates: Reals, u: Reals, v: Reals) -> Reals:
-    """Derivatives (n, k, d) of homogeneous places by those (k, ..., d) of the control points of what they lie on."""
-    if len(u) == 0:
-        return np.zeros((0, len(rates), rates.shape[-1]))
-    matrix = collocation(on, u, v)
-    columns = np.moveaxis(rates, 0, -2).reshape(matrix.shape[1], -1)
-    return np.asarray(matrix @ columns).reshape(len(u), len(rates), rates.shape[-1])
+def moved_along(sides: Sequence[Side], rates: Sequence[Array], footpoints: Footpoints, directions: Reals) -> Reals:
+    """Derivatives (n, k) of footpoints along directions (n, d) by those (k, ..., d) of both sides' control points."""
+    found = np.empty((len(footpoints.u), len(rates[0])))
+    for number, (side, own) in enumerate(zip(sides, rates, strict=True)):
+        rows = np.flatnonzero(footpoints.side == number)
+        if len(rows) == 0:
+            continue
+        matrix = collocation(side, footpoints.u[rows], footpoints.v[rows])
+        columns = np.moveaxis(own, 0, -2).reshape(matrix.shape[1], -1)
+        moved = np.asarray(matrix @ columns).reshape(len(rows), len(own), own.shape[-1])
+        if side.weights is not None:
+            weight = np.asarray(matrix @ side.weights.reshape(-1, 1))[..., None]
+            moved = (moved[..., :-1] - footpoints.points[rows, None] * moved[..., -1:]) / weight
+        found[rows] = np.einsum("nkd,nd->nk", moved, directions[rows])
+    return found
 
 
 def complex_steps(design: Design, paths: Sequence[str]) -> Mapping[str, Any]:
@@ -147,16 +156,7 @@ class SectionModel(Model):
         return ModelShape(design=design, sides=sides, edge_radius_margins=margins, constraints=constraints)
 
     def along(self, shape: ModelShape, footpoints: Footpoints, directions: Reals, paths: Sequence[str]) -> Reals:
-        found = np.empty((len(footpoints.u), len(paths)))
-        for number, (side, rates) in enumerate(zip(shape.sides, self.rates(shape, paths)[:2], strict=True)):
-            rows = np.flatnonzero(footpoints.side == number)
-            u, v = footpoints.u[rows], footpoints.v[rows]
-            moved = place_rates(side, rates, u, v)
-            if side.weights is not None:
-                weight = place_rates(side, side.weights[None, :, None], u, v)
-                moved = (moved[..., :-1] - footpoints.points[rows, None] * moved[..., -1:]) / weight
-            found[rows] = np.einsum("nkd,nd->nk", moved, directions[rows])
-        return found
+        return moved_along(shape.sides, self.rates(shape, paths)[:2], footpoints, directions)
 
     def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         return self.rates(shape, paths)[2]
@@ -179,35 +179,26 @@ class SpatialModel(Model):
     """A kind of blade, at the knots that one design needs for a tolerance."""
 
     knots: Knots
-
-    @abstractmethod
-    def _closed(self, upper: Reals, lower: Reals) -> Nets:
-        """Rates (k, n_u, n_v, 3) of the sides that close the blade by those of the native sides."""
+    blunt: BluntEdges = (False, False)
 
     def along(self, shape: ModelShape, footpoints: Footpoints, directions: Reals, paths: Sequence[str]) -> Reals:
         """By the weights at the footpoints themselves, times what a common step of several parameters does there.
 
         That changes along the span as laws' values do, so that it is interpolated between a knot for each control point
-        of the longest law.
+        of the longest law. The face of a blunt edge moves as the straight one between its edges.
         """
         steps, sources = steps_of(shape.design, paths)
         spans = max(len(step.paths) for step in steps)
         knots = replace(self.knots, v=clamped(np.linspace(0.0, 1.0, spans + 1)[1:-1]), sections=None)
-        nets = self._closed(*step_tangents(self._blade(shape, knots), steps))
-        rates = np.empty((len(footpoints.u), len(steps)))
-        for number, (side, net) in enumerate(zip(shape.sides, nets, strict=True)):
-            rows = np.flatnonzero(footpoints.side == number)
-            on = Surface(
-                control_points=net[0],
-                knots_u=cast(Surface, side).knots_u,
-                knots_v=knots.v,
-                degree_u=DEGREE,
-                degree_v=DEGREE,
-            )
-            moved = place_rates(on, net, footpoints.u[rows], footpoints.v[rows])
-            rates[rows] = np.einsum("nkd,nd->nk", moved, directions[rows])
+        blade = Blade(design=shape.design, surfaces=FrozenMapping({}), knots=knots, chord=self.chord, exact=shape.exact)
+        nets: Sequence[Array] = step_tangents(blade, steps)
+        if any(self.blunt):
+            upper, lower = (np.moveaxis(net, 1, -2) for net in nets)
+            nets = tuple(np.moveaxis(net, -2, 1) for net in closed_nets(upper, lower, DEGREE, self.blunt))
+        sides = [
+            replace(cast(Surface, side), control_points=net[0], knots_v=knots.v)
+            for side, net in zip(shape.sides, nets, strict=True)
+        ]
+        rates = moved_along(sides, nets, footpoints, directions)
         weights = [step.weights(footpoints.v) for step in steps]
         return np.stack([rates[:, step] * weights[step][:, place] for step, place in sources], axis=1)
-
-    def _blade(self, shape: ModelShape, knots: Knots) -> Blade:
-        return Blade(design=shape.design, surfaces=FrozenMapping({}), knots=knots, chord=self.chord, exact=shape.exact)

@@ -18,7 +18,6 @@ from bladewright.blade.native.blade import side_surface
 from bladewright.blade.native.interpolation import edge_faces, native_sides
 from bladewright.blade.native.knots import Knots
 from bladewright.blade.native.refinement import mean_chord, refined_knots
-from bladewright.derivatives.complex_step import Nets
 from bladewright.fitting.models.blunt_edges import BluntEdges, closed_knots, closed_nets, closed_with
 from bladewright.fitting.models.model import (
     FOLD_GRID,
@@ -132,7 +131,7 @@ class SectionedModel(SpatialModel):
         self.chord = mean_chord(exact)
         self.knots: Knots = refined_knots(exact, self.chord)
         kinds = exact.survey.edge_kinds
-        self.blunt: BluntEdges = kinds[0] == "blunt", kinds[1] == "blunt"
+        self.blunt = kinds[0] == "blunt", kinds[1] == "blunt"
 
     def _shape(self, design: Any) -> ModelShape:
         exact = exact_blade_of_sections(design, self.knots, checked=False)
@@ -143,13 +142,6 @@ class SectionedModel(SpatialModel):
         rows = infeasibility(design.section, FEASIBILITY_SPAN), _flow_path_margins(exact, exact)
         constraints = np.concatenate([np.real(each) for each in rows])
         return ModelShape(design=design, sides=(upper, lower), exact=exact, constraints=constraints)
-
-    def _closed(self, upper: Reals, lower: Reals) -> Nets:
-        """With a face of a blunt edge that moves as the straight one between its edges."""
-        if not any(self.blunt):
-            return upper, lower
-        rates = closed_nets(np.moveaxis(upper, 1, -2), np.moveaxis(lower, 1, -2), DEGREE, self.blunt)
-        return np.moveaxis(rates[0], -2, 1), np.moveaxis(rates[1], -2, 1)
 
     def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """Derivatives of the sections' infeasibility, and of how near flow path and edges are to what is refused."""

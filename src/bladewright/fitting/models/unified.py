@@ -12,7 +12,7 @@ from bladewright.blade.native.blade import side_surface
 from bladewright.blade.native.interpolation import native_sides
 from bladewright.blade.native.knots import DEGREE, Knots
 from bladewright.blade.native.refinement import mean_chord, refined_knots
-from bladewright.derivatives.complex_step import STEP, Nets, stepped_design, steps_of
+from bladewright.derivatives.complex_step import STEP, stepped_design, steps_of
 from bladewright.fitting.models.model import (
     FOLD_GRID,
     Model,
@@ -86,9 +86,6 @@ class UnifiedBladeModel(SpatialModel):
             constraints=np.real(_fold_margins(exact, exact.channel)),
             exact=exact,
         )
-
-    def _closed(self, upper: Reals, lower: Reals) -> Nets:
-        return upper, lower
 
     def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """By the laws only: by the channel they vanish but for the walls' slopes, which are left out."""
