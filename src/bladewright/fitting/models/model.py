@@ -31,6 +31,8 @@ many along ended Rotor 67 in a blade that cannot be built (design/matching.md)""
 SMALLEST_JACOBIAN = 0.02
 """smallest Jacobian of a channel, of its median: one that comes nearer to folding over is held there;
 half and twice change nothing measured (design/matching_constants.md)"""
+FINITE_OR_NOT = np.errstate(invalid="ignore", divide="ignore", over="ignore")
+"""without warnings of what is not finite, which the shape itself tells"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -61,11 +63,10 @@ class Model(ABC):
     rounded: bool = False
     """whether all sections end in rounded edges, whose arcs the two sides share"""
 
+    @FINITE_OR_NOT
     def shape(self, design: Design) -> ModelShape:
         """The sides of a design; raises DesignError where there are none at all."""
-        # the shape itself tells where it is not finite
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            return self._shape(design)
+        return self._shape(design)
 
     @abstractmethod
     def _shape(self, design: Any) -> ModelShape:
@@ -139,8 +140,7 @@ def stepped_rates(
 class SectionModel(Model):
     """A kind of section: all that a search sees of it comes from one rebuild, with a complex step on each parameter."""
 
-    def __init__(self) -> None:
-        self._last: tuple[ModelShape | None, tuple[str, ...], list[Reals]] = (None, (), [])
+    _last: tuple[ModelShape | None, tuple[str, ...], Sequence[Reals]] = (None, (), ())
 
     @abstractmethod
     def _parts(self, design: Any) -> tuple[Array, Array, Array, Array]:
@@ -164,7 +164,7 @@ class SectionModel(Model):
     def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         return self.rates(shape, paths)[3]
 
-    def rates(self, shape: ModelShape, paths: Sequence[str]) -> list[Reals]:
+    def rates(self, shape: ModelShape, paths: Sequence[str]) -> Sequence[Reals]:
         """Derivatives (k, ...) of all parts by parameters, kept for the next that asks for them."""
         known, asked, rates = self._last
         if known is not shape or asked != tuple(paths):

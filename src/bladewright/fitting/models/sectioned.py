@@ -20,8 +20,8 @@ from bladewright.blade.native.knots import Knots
 from bladewright.blade.native.refinement import mean_chord, refined_knots
 from bladewright.fitting.models.blunt_edges import BluntEdges, closed_knots, closed_nets, closed_with
 from bladewright.fitting.models.model import (
+    FINITE_OR_NOT,
     FOLD_GRID,
-    Model,
     ModelShape,
     SectionModel,
     SpatialModel,
@@ -66,12 +66,12 @@ OPENING_MARGIN = 0.003
 (design/matching_constants.md)"""
 
 
+@model_of.register(PlanarSection)
 @final
 class PlanarModel(SectionModel):
     """A section of such a family, at the knots that one design needs for a tolerance, of the chord."""
 
     def __init__(self, design: PlanarSection, tolerance: float | None = None) -> None:
-        super().__init__()
         self.chord = float(np.real(design.chord)) * UNITS[design.length_unit]
         outline = design.section.outline(SINGLE_SECTION)
         self.knots: Reals = side_knots_for(outline, design.tolerance if tolerance is None else tolerance)
@@ -116,15 +116,12 @@ def _net(points: Array, edges: tuple[Edge, Edge], name: str, knots: Reals) -> Ar
     return interpolated_along_u(np.swapaxes(lines, -3, -2), rows[0], rows[1], knots)[..., 0, :]
 
 
-@model_of.register
-def _(design: PlanarSection, tolerance: float | None = None) -> Model:
-    return PlanarModel(design, tolerance)
-
-
+@model_of.register(SectionedBlade)
 @final
 class SectionedModel(SpatialModel):
     """A blade from sections of any family, at the knots that one design needs for a tolerance, of the chord."""
 
+    @FINITE_OR_NOT
     def __init__(self, design: SectionedBlade, tolerance: float | None = None) -> None:
         own = replace(design, tolerance=design.tolerance if tolerance is None else tolerance)
         exact = exact_blade_of_sections(own, checked=False)
@@ -172,12 +169,6 @@ def _flow_path_margins(exact: Any, moved: Any) -> Array:
         for _, place in placement.intersections(ENDS):
             rows += [MET_MARGIN - EXTENSION - place, place - 1.0 - EXTENSION + MET_MARGIN]
     return concatenated(rows, axis=-1)
-
-
-@model_of.register
-def _(design: SectionedBlade, tolerance: float | None = None) -> Model:
-    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        return SectionedModel(design, tolerance)
 
 
 @singledispatch

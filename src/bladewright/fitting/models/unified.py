@@ -14,8 +14,8 @@ from bladewright.blade.native.knots import DEGREE, Knots
 from bladewright.blade.native.refinement import mean_chord, refined_knots
 from bladewright.derivatives.complex_step import STEP, stepped_design, steps_of
 from bladewright.fitting.models.model import (
+    FINITE_OR_NOT,
     FOLD_GRID,
-    Model,
     ModelShape,
     SectionModel,
     SpatialModel,
@@ -40,14 +40,14 @@ what `build` promises. On Rotor 67 it saves half of the derivatives' time and ch
 (design/matching.md)."""
 
 
+@model_of.register(UnifiedSection)
 @final
 class UnifiedSectionModel(SectionModel):
     """Sections of the unified family."""
 
     rounded = True
 
-    def __init__(self, design: UnifiedSection) -> None:
-        super().__init__()
+    def __init__(self, design: UnifiedSection, tolerance: float | None = None) -> None:  # noqa: ARG002 - the contract's
         slope = np.cos(np.radians(design.stagger))
         self.chord = float(design.axial_chord * UNITS[design.length_unit] / slope)
 
@@ -60,12 +60,14 @@ class UnifiedSectionModel(SectionModel):
         return side_curve(net)
 
 
+@model_of.register(UnifiedBlade)
 @final
 class UnifiedBladeModel(SpatialModel):
     """Blades of the unified family, at the knots that one of them needs."""
 
     rounded = True
 
+    @FINITE_OR_NOT
     def __init__(self, design: UnifiedBlade, tolerance: float | None = None) -> None:
         self.tolerance = design.tolerance if tolerance is None else tolerance
         exact = exact_unified_blade(design.changed("tolerance", self.tolerance), tentative=True)
@@ -153,14 +155,3 @@ def _edge_radius_margins(design: Any, line: Array, upper: Array, lower: Array) -
             next_thickness = length(plain[..., third, :] - camber[..., end, :])
             rows.append(np.stack([(height - next_thickness) / extent, height / next_thickness])[..., None, :])
     return concatenated(rows, axis=-2)
-
-
-@model_of.register
-def _(design: UnifiedSection, tolerance: float | None = None) -> Model:  # noqa: ARG001 - the contract's
-    return UnifiedSectionModel(design)
-
-
-@model_of.register
-def _(design: UnifiedBlade, tolerance: float | None = None) -> Model:
-    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        return UnifiedBladeModel(design, tolerance)
