@@ -38,7 +38,7 @@ from bladewright.section.checks import UNITS
 from bladewright.section.curvature_meanline import CurvatureMeanline
 from bladewright.section.laws import Span
 from bladewright.section.native import DEGREE, interpolated_along_u, side_knots_for
-from bladewright.section.outline import Edge, EdgeDerivatives
+from bladewright.section.outline import EdgeDerivatives
 from bladewright.section.planar import PlanarSection
 from bladewright.section.segmented.part import Segmented
 from bladewright.section.suction_pressure.edges import MAX_OPENING, opening
@@ -82,38 +82,20 @@ class PlanarModel(SectionModel):
         return Curve(control_points=net, knots=self.closed, degree=DEGREE)
 
     def _parts(self, design: Any) -> tuple[Array, Array, Array, Array]:
-        return *self._nets(design), np.zeros((2, 0)), infeasibility(design.section, SINGLE_SECTION)
-
-    def _nets(self, design: Any) -> tuple[Array, Array]:
-        """Control points (..., n, 2) of both sides where the section stands [m]."""
         outline, turn = design.section.outline(SINGLE_SECTION), design.section.stagger(SINGLE_SECTION)
-        inner = greville(self.knots, DEGREE)[3:-3]
-        edges = outline.leading_edge, outline.trailing_edge
-        nets = [
-            _net(points, edges, name, self.knots)
-            for points, name in zip(outline.points(inner), ("upper", "lower"), strict=True)
-        ]
-        metre = UNITS[design.length_unit]
-        chord, x, y = (
-            np.asarray(value)[..., None] * metre
-            for value in (design.chord, design.leading_edge_x, design.leading_edge_y)
-        )
+        lengths = design.chord, design.leading_edge_x, design.leading_edge_y
+        chord, x, y = (np.asarray(value)[..., None] * UNITS[design.length_unit] for value in lengths)
         cosine, sine = np.cos(turn), np.sin(turn)
-        placed = []
-        for net in nets:
+        nets = []
+        for name, points in zip(("upper", "lower"), outline.points(greville(self.knots, DEGREE)[3:-3]), strict=True):
+            edges = np.broadcast_arrays(*getattr(outline.leading_edge, name), *getattr(outline.trailing_edge, name))
+            start, end = EdgeDerivatives(*edges[:3]), EdgeDerivatives(*edges[3:])
+            net = interpolated_along_u(np.swapaxes(points, -3, -2), start, end, self.knots)[..., 0, :]
             a, b = net[..., 0], net[..., 1]
-            points = [x + chord * (a * cosine - b * sine), y + chord * (a * sine + b * cosine)]
-            placed.append(np.stack(np.broadcast_arrays(*points), axis=-1))
-        return closed_nets(placed[0], placed[1], DEGREE, self.blunt)
-
-
-def _net(points: Array, edges: tuple[Edge, Edge], name: str, knots: Reals) -> Array:
-    """Control points (..., n, 2) of a side in chords, from its points (..., 1, n - 6, 2) between the edges."""
-    starts = [getattr(edge, name) for edge in edges]
-    batch = np.broadcast_shapes(points.shape[:-3], *[each.shape[:-2] for start in starts for each in start])
-    rows = [EdgeDerivatives(*(np.broadcast_to(each, (*batch, 1, 2)) for each in start)) for start in starts]
-    lines = np.broadcast_to(points, (*batch, *points.shape[-3:]))
-    return interpolated_along_u(np.swapaxes(lines, -3, -2), rows[0], rows[1], knots)[..., 0, :]
+            placed = x + chord * (a * cosine - b * sine), y + chord * (a * sine + b * cosine)
+            nets.append(np.stack(np.broadcast_arrays(*placed), axis=-1))
+        closed = closed_nets(nets[0], nets[1], DEGREE, self.blunt)
+        return *closed, np.zeros((2, 0)), infeasibility(design.section, SINGLE_SECTION)
 
 
 @model_of.register(SectionedBlade)

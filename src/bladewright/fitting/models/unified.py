@@ -52,7 +52,12 @@ class UnifiedSectionModel(SectionModel):
         self.chord = float(design.axial_chord * UNITS[design.length_unit] / slope)
 
     def _parts(self, design: Any) -> tuple[Array, Array, Array, Array]:
-        line, upper, lower = _outline(design)
+        shift = np.asarray(design.leading_edge_x)[..., None, None, None] * UNITS[design.length_unit]
+        # homogeneous places move by their weight as far
+        line, upper, lower = (
+            part + shift * (part[..., 2:] if part.shape[-1] == 3 else 1.0) * np.eye(1, part.shape[-1])
+            for part in design.outline(tentative=True)
+        )
         margins = np.moveaxis(_edge_radius_margins(design, line, upper, lower)[..., 0], 0, -2)
         return upper[..., 0, :, :], lower[..., 0, :, :], margins, np.zeros(0)
 
@@ -127,19 +132,6 @@ def _fold_margins(exact: ExactUnifiedBlade, channel: TransfiniteChannel) -> Arra
     u = np.linspace(-exact.before, 1.0 + exact.after, FOLD_GRID[0])
     v = np.linspace(0.0, 1.0, FOLD_GRID[1])
     return fold_margins(exact.channel.slopes(u, v), channel.slopes(u, v))
-
-
-def _outline(design: UnifiedSection) -> tuple[Array, Array, Array]:
-    """Control points (..., 1, n, 2) in the section's place; those of rational sides (..., 1, n, 3)."""
-    line, upper, lower = design.outline(tentative=True)
-    shift = np.asarray(design.leading_edge_x)[..., None, None] * UNITS[design.length_unit]
-    parts = []
-    for part in (line, upper, lower):
-        weight = part[..., 2] if part.shape[-1] == 3 else 1.0
-        abscissa = part[..., 0] + shift * weight
-        others = [np.broadcast_to(part[..., i], abscissa.shape) for i in range(1, part.shape[-1])]
-        parts.append(np.stack([abscissa, *others], axis=-1))
-    return parts[0], parts[1], parts[2]
 
 
 def _edge_radius_margins(design: Any, line: Array, upper: Array, lower: Array) -> Array:
