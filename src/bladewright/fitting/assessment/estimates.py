@@ -70,7 +70,7 @@ def parameter_estimates(match: Match) -> ParameterEstimates:
     (weights that are not the inverse variances).
     """
     problem, scales = match.problem, match.problem.scales
-    slopes, excess, variance, left = _linearised(match)
+    slopes, excess, variance, left = _linearised(match, problem.paths, scales.size)
     values = problem.values_of(match.design)
     # what a bound holds is known
     inside = scales.inside(values)
@@ -114,8 +114,9 @@ def shape_covariance(match: Match) -> tuple[tuple[str, ...], Reals]:
     as its prior, and intervals of what both leave).
     """
     problem, held = match.problem, () if match.state.shape.exact is None else tuple(sorted(match.held))
-    paths, sizes = (*problem.paths, *held), np.append(problem.scales.size, _size_of(match, held))
-    slopes, _, variance, _ = _linearised(match, held)
+    paths = *problem.paths, *held
+    sizes = np.append(problem.scales.size, scales_of(match.design, held, match.model.chord).size)
+    slopes, _, variance, _ = _linearised(match, paths, sizes)
     prior = regularisation_of(match.design, paths, sizes, ends_shown=match.ends.in_rows(match.model.chord)).matrix
     # what a bound holds is known
     inside = np.append(problem.scales.inside(problem.values_of(match.design)), np.ones(len(held), dtype=bool))
@@ -124,11 +125,6 @@ def shape_covariance(match: Match) -> tuple[tuple[str, ...], Reals]:
     covariance = np.zeros((len(inside), len(inside)))
     covariance[np.ix_(inside, inside)] = (turns.T / singular**2) @ turns
     return paths, covariance * np.outer(sizes, sizes)
-
-
-def _size_of(match: Match, paths: Sequence[str]) -> Reals:
-    """The scales (k,) of parameters."""
-    return scales_of(match.design, paths, match.model.chord).size if paths else np.empty(0)
 
 
 def independent_share(places: Reals, residuals: Reals) -> float:
@@ -161,7 +157,7 @@ def undetermined_parameters(match: Match, margin: float) -> list[str]:
     Each in turn is the one with the largest share in the direction that is determined least (Golub and Van Loan 2013,
     section 5.5.7).
     """
-    slopes, _, variance, _ = _linearised(match)
+    slopes, _, variance, _ = _linearised(match, match.problem.paths, match.problem.scales.size)
     least = margin * float(np.sqrt(variance))
     triangle, kept = np.asarray(np.linalg.qr(slopes, mode="r")), np.arange(slopes.shape[1])
     while len(kept) > 1:
@@ -172,18 +168,17 @@ def undetermined_parameters(match: Match, margin: float) -> list[str]:
     return [path for place, path in enumerate(match.problem.paths) if place not in kept]
 
 
-def _linearised(match: Match, held: Sequence[str] = ()) -> tuple[Reals, Reals, float, float]:
+def _linearised(match: Match, paths: Sequence[str], sizes: Reals) -> tuple[Reals, Reals, float, float]:
     """Derivatives (m, k) of residuals by scaled parameters, and how much more these weigh than inverse variances (m,).
 
-    The parameters are the free ones, and after them some that are `held`. Then the variance of the residuals of
-    independent points, in chords, and its degrees of freedom.
+    The parameters are the free ones, and after them some that are held, of given scales (k,). Then the variance of the
+    residuals of independent points, in chords, and its degrees of freedom.
     """
     cloud, problem = match.problem.cloud_residuals, match.problem
+    rows, count = cloud.residuals(match.state), len(cloud.points)
     # how far edges may stand out is a limit on them, and no point that shows them
-    rows, slopes = cloud.residuals(match.state), cloud.slopes(match.state, (*problem.paths, *held))
-    slopes = slopes * np.append(problem.scales.size, _size_of(match, held))
-    shown, count = slice(len(rows) - len(cloud.overhang.u)), len(cloud.points)
-    rows, slopes = rows[shown], slopes[shown]
+    shown = slice(len(rows) - len(cloud.overhang.u))
+    rows, slopes = rows[shown], cloud.slopes(match.state, paths)[shown] * sizes
     excess = np.ones(len(rows))
     taking = cloud.roots > 0.0
     excess[:count] = np.where(taking, cloud.roots**2 / np.where(cloud.precision > 0.0, cloud.precision, 1.0), 1.0)
