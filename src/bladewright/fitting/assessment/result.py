@@ -179,8 +179,58 @@ class Fit(FrozenRecord, Shown):
         return tuple(each.path for each in self.estimates if each.at_bound)
 
     def to_dict(self) -> dict[str, Any]:
-        """The report, for JSON; lengths in metres."""
-        return report(self)
+        """The report: plain numbers, strings, lists and dictionaries, ready for JSON; what is not finite is None.
+
+        Deviations are those of the inliers, each in metres, in millimetres and of the chord; a region without points
+        has None. `outliers` lists the first 1000, by their index in the cloud. Estimates are in the units of their
+        fields, and so are rows and columns of the covariance, in the same order.
+        """
+        off, chord, motion = self.distances[self.outliers], self.chord, self.motion
+        regions = {name: self.by_region.get(name, deviation_of(np.empty(0))) for name in REGIONS}
+        found = {
+            "name": self.design.name,  # type: ignore[attr-defined]
+            "passed": self.passed,
+            "failures": self.failures,
+            "notes": self.notes,
+            "interrupted": self.interrupted,
+            "points": len(self.cloud),
+            "inliers": np.count_nonzero(self.inliers),
+            "outliers": {
+                "count": len(off),
+                "farthest_m": np.max(off, initial=-np.inf),
+                "listed": [
+                    {"index": i, **_in_units("distance", self.distances[i])} for i in self.outliers[:LISTED_OUTLIERS]
+                ],
+            },
+            "set_aside": {kind: _figures(each, chord) for kind, each in self.by_kind_set_aside.items()},
+            "chord_m": chord,
+            **_in_units("tolerance", self.tolerance),
+            **_in_units("noise", self.noise),
+            "deviation": {name: _figures(of, chord) for name, of in {"all": self.deviation, **regions}.items()},
+            "worst": _worst(self),
+            "curvature_extrema": dict(self.extrema),
+            "parameters": len(self.estimates),
+            "rank": self.rank,
+            "condition": self.condition,
+            "unidentified": self.unidentified,
+            "at_bounds": self.at_bounds,
+            "estimates": [
+                {
+                    "path": each.path,
+                    "unit": unit_of_parameter(self.design, each.path),
+                    "value": each.value,
+                    "standard_deviation": each.deviation,
+                    "interval_95": (each.low, each.high),
+                    "identified": each.identified,
+                    "at_bound": each.at_bound,
+                }
+                for each in self.estimates
+            ],
+            "covariance": self.covariance,
+            "motion": motion and {"rotation": motion.rotation, **_in_units("translation", motion.translation)},
+            "evaluations": self.evaluations,
+        }
+        return dict(plain(found))
 
     def __repr__(self) -> str:
         verdict, points = "passed" if self.passed else "FAILED", f"{len(self.cloud)} points"
@@ -189,63 +239,46 @@ class Fit(FrozenRecord, Shown):
         return f"<Fit '{name}' of {type(self.design).__name__}: {verdict}; {points}, {off}>"
 
     def __str__(self) -> str:
-        return text(self)
+        """For people: whether it passes and why not, deviations by region, then the parameters.
 
-
-def report(fit: Fit) -> dict[str, Any]:
-    """A fit as plain numbers, strings, lists and dictionaries, ready for JSON; what is not finite is None.
-
-    Deviations are those of the inliers, each in metres, in millimetres and of the chord; a region without points has
-    None. `outliers` lists the first 1000, by their index in the cloud. Estimates are in the units of their fields, and
-    so are rows and columns of the covariance, in the same order.
-    """
-    off, listed = fit.distances[fit.outliers], fit.outliers[:LISTED_OUTLIERS]
-    nothing = deviation_of(np.empty(0))
-    found = {
-        "name": fit.design.name,  # type: ignore[attr-defined]
-        "passed": fit.passed,
-        "failures": fit.failures,
-        "notes": fit.notes,
-        "interrupted": fit.interrupted,
-        "points": len(fit.cloud),
-        "inliers": np.count_nonzero(fit.inliers),
-        "outliers": {
-            "count": len(off),
-            "farthest_m": np.max(off, initial=-np.inf),
-            "listed": [{"index": i, **_in_units("distance", fit.distances[i])} for i in listed],
-        },
-        "set_aside": {kind: _figures(each, fit.chord) for kind, each in fit.by_kind_set_aside.items()},
-        "chord_m": fit.chord,
-        **_in_units("tolerance", fit.tolerance),
-        **_in_units("noise", fit.noise),
-        "deviation": {
-            "all": _figures(fit.deviation, fit.chord),
-            **{name: _figures(fit.by_region.get(name, nothing), fit.chord) for name in REGIONS},
-        },
-        "worst": _worst(fit),
-        "curvature_extrema": dict(fit.extrema),
-        "parameters": len(fit.estimates),
-        "rank": fit.rank,
-        "condition": fit.condition,
-        "unidentified": fit.unidentified,
-        "at_bounds": fit.at_bounds,
-        "estimates": [
-            {
-                "path": each.path,
-                "unit": unit_of_parameter(fit.design, each.path),
-                "value": each.value,
-                "standard_deviation": each.deviation,
-                "interval_95": (each.low, each.high),
-                "identified": each.identified,
-                "at_bound": each.at_bound,
-            }
-            for each in fit.estimates
-        ],
-        "covariance": fit.covariance,
-        "motion": fit.motion and {"rotation": fit.motion.rotation, **_in_units("translation", fit.motion.translation)},
-        "evaluations": fit.evaluations,
-    }
-    return {key: plain(value) for key, value in found.items()}
+        Lengths are in the design's own unit.
+        """
+        design, off = self.design, self.distances[self.outliers]
+        result = ("passed" if self.passed else "FAILED") + (", interrupted" if self.interrupted else "")
+        tolerance = "" if self.tolerance is None else f"tolerance {with_unit(design, self.tolerance)}, "
+        noise, chord = with_unit(design, self.noise), with_unit(design, self.chord, 6)
+        outliers = "no outliers"
+        if len(off):
+            listed = ", ".join(str(i) for i in self.outliers[:8]) + (", ..." if len(off) > 8 else "")
+            share = f"({100.0 * len(off) / len(self.cloud):.2g} %) up to {with_unit(design, np.max(off))} away"
+            outliers = f"{_number_of(len(off), 'outlier')} {share}: number {listed}"
+        lines = [
+            f"{design.name}: {result}",  # type: ignore[attr-defined]
+            *(f"  - {failure}" for failure in self.failures),
+            *_table(self),
+            f"  {tolerance}noise of the cloud {noise}, chord {chord}",
+            f"  {_number_of(len(self.cloud), 'point')}, {outliers}",
+        ]
+        set_aside = [
+            f"{each.count} on the {kind} (up to {with_unit(design, each.maximum)} away)"
+            for kind, each in self.by_kind_set_aside.items()
+        ]
+        if set_aside:
+            lines.append(f"  set aside: {', '.join(set_aside)}")
+        if self.motion is not None:
+            cosine = (np.trace(self.motion.rotation) - (len(self.motion.rotation) - 2)) / 2.0
+            angle = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
+            shift = ", ".join(in_unit(design, each, 6) for each in self.motion.translation)
+            lines.append(
+                f"  moved to the machine's axes: turned by {angle:.6g} deg, then shifted by ({shift}) "
+                f"{design.length_unit}"  # type: ignore[attr-defined]
+            )
+        if self.extrema:
+            counts = ", ".join(f"{number} on the {name} side" for name, number in self.extrema.items())
+            lines.append(f"  extrema of curvature: {counts}")
+        known = f"rank {self.rank}, condition {self.condition:.2g}, {_number_of(self.evaluations, 'evaluation')}"
+        lines += [f"  {_number_of(len(self.estimates), 'free parameter')}, {known}", *_parameters(self)]
+        return "\n".join([*lines, *(f"  note: {note}" for note in self.notes)])
 
 
 def _in_units(name: str, metres: Any) -> dict[str, Any]:
@@ -287,47 +320,6 @@ def plain(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def text(fit: Fit) -> str:
-    """A fit for people: whether it passes and why not, deviations by region, then the parameters.
-
-    Lengths are in the design's own unit.
-    """
-    design, off = fit.design, fit.distances[fit.outliers]
-    result = ("passed" if fit.passed else "FAILED") + (", interrupted" if fit.interrupted else "")
-    tolerance = "" if fit.tolerance is None else f"tolerance {with_unit(design, fit.tolerance)}, "
-    noise, chord = with_unit(design, fit.noise), with_unit(design, fit.chord, 6)
-    outliers = "no outliers"
-    if len(off):
-        listed = ", ".join(str(i) for i in fit.outliers[:8]) + (", ..." if len(off) > 8 else "")
-        share = f"({100.0 * len(off) / len(fit.cloud):.2g} %) up to {with_unit(design, np.max(off))} away"
-        outliers = f"{_number_of(len(off), 'outlier')} {share}: number {listed}"
-    lines = [
-        f"{design.name}: {result}",  # type: ignore[attr-defined]
-        *(f"  - {failure}" for failure in fit.failures),
-        *_table(fit),
-        f"  {tolerance}noise of the cloud {noise}, chord {chord}",
-        f"  {_number_of(len(fit.cloud), 'point')}, {outliers}",
-    ]
-    if fit.by_kind_set_aside:
-        kinds = fit.by_kind_set_aside.items()
-        set_aside = (
-            f"{each.count} on the {kind} (up to {with_unit(design, each.maximum)} away)" for kind, each in kinds
-        )
-        lines.append(f"  set aside: {', '.join(set_aside)}")
-    if fit.motion is not None:
-        turn = np.asarray(fit.motion.rotation)
-        cosine = (np.trace(turn) - (1.0 if len(turn) == 3 else 0.0)) / 2.0
-        angle = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
-        shift = f"({', '.join(in_unit(design, each, 6) for each in fit.motion.translation)}) {unit_of_lengths(design)}"
-        lines.append(f"  moved to the machine's axes: turned by {angle:.6g} deg, then shifted by {shift}")
-    if fit.extrema:
-        counts = ", ".join(f"{number} on the {name} side" for name, number in fit.extrema.items())
-        lines.append(f"  extrema of curvature: {counts}")
-    free, evaluations = _number_of(len(fit.estimates), "free parameter"), _number_of(fit.evaluations, "evaluation")
-    lines.append(f"  {free}, rank {fit.rank}, condition {fit.condition:.2g}, {evaluations}")
-    return "\n".join([*lines, *_parameters(fit), *(f"  note: {note}" for note in fit.notes)])
-
-
 def _table(fit: Fit) -> list[str]:
     """Deviations of the inliers, a row for each region."""
     rows = [[f"deviation [{unit_of_lengths(fit.design)}]", "points", "mean", "rms", "99 %", "max", "max of chord"]]
@@ -353,22 +345,17 @@ def _parameters(fit: Fit) -> list[str]:
     lines = []
     for each in shown:
         marks = ["NOT IDENTIFIED"] * (not each.identified) + ["AT BOUND"] * each.at_bound
-        value, spread = _with_spread(each)
+        half, value, spread = (each.high - each.low) / 2.0, f"{each.value:.6g}", ""
+        if each.identified and math.isfinite(half) and half > 0.0:
+            # to the digits that are known
+            decimals = min(max(1 - math.floor(math.log10(half)), 0), 12)
+            value, spread = f"{each.value:.{decimals}f}", f"+- {half:.2g}"
         unit = unit_of_parameter(fit.design, each.path)
         lines.append(f"    {each.path:<{width}}  {value:>12}  {spread:<12}  {unit:<4} {', '.join(marks)}".rstrip())
     rest = len(fit.estimates) - len(shown)
     if rest:
         lines.append(f"    {'the others' if shown else 'all'} ({rest}) are identified and inside their bounds")
     return lines
-
-
-def _with_spread(each: Estimate) -> tuple[str, str]:
-    """The value to the digits that are known, and half of its 95 % interval."""
-    half = (each.high - each.low) / 2.0
-    if not (each.identified and math.isfinite(half) and half > 0.0):
-        return f"{each.value:.6g}", ""
-    decimals = min(max(1 - math.floor(math.log10(half)), 0), 12)
-    return f"{each.value:.{decimals}f}", f"+- {half:.2g}"
 
 
 def _number_of(count: int, what: str) -> str:
