@@ -1,6 +1,5 @@
 """Which parameters of a design a fit may change, whatever its structure."""
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -21,16 +20,14 @@ EDGES = ("leading_edge", "trailing_edge")
 """edge curves of a blade"""
 WALLS = ("hub", "shroud")
 """walls of a flow path"""
-
-
-BESIDE_THE_BLADE = ("density", "disc", "shroud_ring")
-"""Parameters and tables of a design that say nothing of its blade."""
+NOT_IN_CLOUD = ("density", "disc", "shroud_ring", "pitch", "span", "tip_clearance", "hub_clearance")
+"""fields and tables of a design that the points of one blade do not determine"""
 
 
 def gauge_parameters(design: Design, *, walls: bool = False) -> frozenset[str]:
     """Paths of the parameters that a cloud cannot determine, which are held unless they are freed.
 
-    Of any design they are those that say nothing of its blade: the metal's density, and what carries the blades.
+    Of any design they are the metal's density, what carries the blades, their pitch and clearances, and the span.
     Of control points that count by their ratios only it is the largest. Of points of a contour it is the coordinate
     along which they slide on it, and both coordinates of the first and the last along the chord, as their size and
     direction do not matter. Of a segmented airfoil it is the cuts, which are a choice, and where its chord line lies,
@@ -38,24 +35,18 @@ def gauge_parameters(design: Design, *, walls: bool = False) -> frozenset[str]:
     coordinate along which the points of its edge curves slide on the curve. Where the `walls` are free, only that
     coordinate of the points of hub and shroud is held.
     """
-    beside = {path for path in design.parameters() if path.partition(".")[0] in BESIDE_THE_BLADE}
-    return frozenset(beside) | _gauge_of_blade(design, walls=walls)
-
-
-def _gauge_of_blade(design: Design, *, walls: bool) -> frozenset[str]:
-    if isinstance(design, UnifiedBlade):
-        return frozenset() if design.flow_path is None else _in_flow_path(design)
+    values = design.parameters()
+    found = {path for path in values if path.startswith(NOT_IN_CLOUD)}
+    if isinstance(design, UnifiedBlade) and design.flow_path is not None:
+        found |= _in_flow_path(design)
+    found |= _largest_curvature(values)
     section = getattr(design, "section", None)
-    if section is None:
-        return frozenset()
-    found = {f"section.{path}" for path in _largest_curvature(section.parameters())}
     if isinstance(section, Segmented):
         held = ("section.partition", "section.stagger_angle", "leading_edge_y")
-        found |= {path for path in design.parameters() if path.startswith(held)}
+        found |= {path for path in values if path.startswith(held)}
     if isinstance(section, PointsProfile):
         found |= _along_contour(section)
     if isinstance(design, SectionedBlade):
-        values = design.parameters()
         found |= {path for path in values if path.startswith("flow_path.")}
         found -= _across_walls(design) if walls else frozenset()
         for edge in EDGES:
@@ -78,7 +69,7 @@ def _longer(points: Array) -> str:
 
 def _in_flow_path(design: UnifiedBlade) -> frozenset[str]:
     """Flow path, and the coordinates along which the points of the channel's edges slide on these."""
-    along = {edge: _longer(np.array([tuple(each) for each in getattr(design.channel, edge)])) for edge in EDGES}
+    along = {edge: _longer(np.array(getattr(design.channel, edge))) for edge in EDGES}
     return frozenset(
         path
         for path in design.parameters()
@@ -96,8 +87,7 @@ def _across_walls(design: SectionedBlade) -> frozenset[str]:
     for wall in WALLS:
         curve = getattr(design.flow_path, wall)
         if isinstance(curve, ThroughPoints):
-            points = np.array([[float(np.real(each.x)), float(np.real(each.r))] for each in curve.points])
-            way = np.gradient(points, axis=0) ** 2
+            way = np.gradient(np.real(np.array(curve.points)), axis=0) ** 2
             across = np.where(way[:, 0] >= way[:, 1], "r", "x")
             found |= {f"flow_path.{wall}.points[{i}].{name}" for i, name in enumerate(across)}
     if design.flow_path.matched == "ends" and isinstance(design.flow_path.shroud, ThroughPoints):
@@ -118,18 +108,11 @@ def _along_contour(section: PointsProfile) -> set[str]:
     return {f"section.{path}" for path in section.parameters() if path.startswith(tuple(held))}
 
 
-def _largest_curvature(values: dict[str, float]) -> list[str]:
+def _largest_curvature(values: Mapping[str, float]) -> set[str]:
     """The whole law of the control point of the second derivative that is largest."""
-    found = {path: value for path, value in values.items() if re.match(r"curvature\[", path)}
-    if not found:
-        return []
-    of = max(found, key=lambda path: found[path] ** 2)
-    stem = re.match(r"curvature\[\d+\]", of)
-    return [path for path in found if stem is not None and path.startswith(stem[0])]
-
-
-NOT_IN_CLOUD = ("pitch", "span", "tip_clearance", "hub_clearance")
-"""fields that the points of one blade do not determine"""
+    found = {path: value for path, value in values.items() if path.startswith("section.curvature[")}
+    largest = max(found, key=lambda path: found[path] ** 2, default="")
+    return {path for path in found if path.startswith(largest.partition("]")[0] + "]")}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -152,9 +135,7 @@ class FreeParameters:
         except DesignError as error:
             raise FitError(str(error)) from error
         if self.free is None:
-            held |= gauge_parameters(design, walls=self.walls) | {
-                path for path in wanted if path.startswith(NOT_IN_CLOUD)
-            }
+            held |= gauge_parameters(design, walls=self.walls)
         held |= {path for place in self.unseen for path in parameters_of_curve(design, place)}
         found = tuple(path for path in wanted if path not in held)
         if not found:
@@ -188,16 +169,16 @@ def corner_radii(design: Design) -> tuple[str, ...]:
     """Paths of the radii at which a blade's edges meet hub and shroud."""
     if not isinstance(design, UnifiedBlade):
         return ()
-    last = {edge: len(getattr(design.channel, edge)) - 1 for edge in ("leading_edge", "trailing_edge")}
-    return tuple(f"channel.{edge}[{place}].r" for edge, end in last.items() for place in (0, end))
+    ends = {edge: (0, len(getattr(design.channel, edge)) - 1) for edge in EDGES}
+    return tuple(f"channel.{edge}[{place}].r" for edge in EDGES for place in ends[edge])
 
 
 def parameters_of_curve(design: Design, name: str) -> frozenset[str]:
     """Paths of the parameters of an edge or a wall of a blade; of a channel's corners, across the wall."""
     paths = [p for p in design.parameters() if p.startswith((f"channel.{name}", f"flow_path.{name}", f"{name}."))]
     if isinstance(design, UnifiedBlade) and name in WALLS:
-        corners = {edge: getattr(design.channel, edge)[-WALLS.index(name)] for edge in EDGES}
-        across = "r" if _longer(np.array([tuple(each) for each in corners.values()])) == "x" else "x"
-        last = {edge: WALLS.index(name) * (len(getattr(design.channel, edge)) - 1) for edge in EDGES}
-        paths += [f"channel.{edge}[{place}].{across}" for edge, place in last.items()]
+        corners = {edge: WALLS.index(name) * (len(getattr(design.channel, edge)) - 1) for edge in EDGES}
+        points = np.array([getattr(design.channel, edge)[place] for edge, place in corners.items()])
+        across = "r" if _longer(points) == "x" else "x"
+        paths += [f"channel.{edge}[{place}].{across}" for edge, place in corners.items()]
     return frozenset(paths)
