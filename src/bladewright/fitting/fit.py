@@ -55,8 +55,6 @@ CASCADE_NOTE = (
     "stands around x needs the arrangement annular, one with its span along y the arrangement linear"
 )
 """note where a cloud without a start was taken for a blade of a linear cascade"""
-TURN_UPRIGHT = Motion(rotation=about_x(UPRIGHT), translation=np.zeros(3))
-"""the turn about x that brings y to z"""
 INTERRUPTED_NOTE = (
     f"the search was interrupted, so the design's tolerance is at least {EXACT:g} of the chord, which "
     "builds in a moment: lower it for finer surfaces"
@@ -186,7 +184,8 @@ def _ways_of(
     motion = None if axis is None else axis_motion(axis, points.shape[1])
     cascade = header.arrangement == "linear" and points.shape[1] == 3 and not given
     if cascade and spans_along_y(points if motion is None else motion(points)):
-        return [(TURN_UPRIGHT if motion is None else composed(TURN_UPRIGHT, motion), (UPRIGHT_NOTE,))]
+        turn = Motion(rotation=about_x(UPRIGHT), translation=np.zeros(3))
+        return [(turn if motion is None else composed(turn, motion), (UPRIGHT_NOTE,))]
     return [(motion, ())]
 
 

@@ -95,7 +95,7 @@ def measured(
     noise_estimate = noise_of(points[rows], footpoints.part(rows), None if precision is None else precision[rows])
     inliers = np.zeros(len(points), dtype=bool)
     inliers[rows] = noise_estimate.inliers
-    shape = ModelShape(design=None, sides=sides, edge_radius_margins=np.zeros(0), exact=exact)
+    shape = ModelShape(design=None, sides=sides, exact=exact)
     on_end_face = blade_ends_of(points, footpoints, shape, set_aside == "").on_end_face
     deviations = np.where(footpoints.heights < 0.0, -1.0, 1.0) * off
     places = np.array(["upper", "lower"], dtype="<U20")[footpoints.side]
@@ -103,9 +103,7 @@ def measured(
     footpoints, on_face = on_sides(footpoints, blunt_edges_of(built))
     places = np.select([on_face < 0, on_face > 0], EDGES, places)
     places = np.where(set_aside == "", places, set_aside)
-    past_end = np.any(footpoints.beyond != 0.0, axis=1) & (
-        np.abs(np.sum(footpoints.miss * footpoints.beyond, axis=1)) > np.abs(footpoints.heights)
-    )
+    past_end = np.abs(np.sum(footpoints.miss * footpoints.beyond, axis=1)) > np.abs(footpoints.heights)
     regions = np.select([past_end, *near_edges], ["ends", *EDGE_PARAMETERS], "sides")
     if isinstance(built, Blade):
         for (name, end), face in zip(END_PARAMETERS.items(), built.design.ends, strict=True):

@@ -4,7 +4,7 @@ A model refuses nothing that a step of a search may pass on its way, and holds t
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import singledispatch
 from typing import Any, cast
@@ -108,11 +108,10 @@ def moved_along(sides: Sequence[Side], rates: Sequence[Array], footpoints: Footp
     return found
 
 
-def complex_steps(design: Design, paths: Sequence[str]) -> Mapping[str, Any]:
-    """Changes that put an imaginary step on each parameter in a batch."""
-    values = design.parameters()
-    kicks = 1j * STEP * np.eye(len(paths))
-    return {path: values[path] + kick for path, kick in zip(paths, kicks, strict=True)}
+def stepped(design: Design, paths: Sequence[str]) -> Any:
+    """The design with a batch of complex steps, one on each parameter."""
+    values, kicks = design.parameters(), 1j * STEP * np.eye(len(paths))
+    return design.changed({path: values[path] + kick for path, kick in zip(paths, kicks, strict=True)})
 
 
 def fold_margins(own: tuple[Array, Array], moved: tuple[Array, Array]) -> Array:
@@ -132,8 +131,7 @@ def stepped_rates(
     found = np.zeros((len(paths), count))
     own = [place for place, path in enumerate(paths) if path.startswith(moving)]
     if count and own:
-        stepped = shape.design.changed(complex_steps(shape.design, [paths[place] for place in own]))
-        found[own] = np.imag(values(stepped)) / STEP
+        found[own] = np.imag(values(stepped(shape.design, [paths[place] for place in own]))) / STEP
     return found
 
 
@@ -168,7 +166,7 @@ class SectionModel(Model):
         """Derivatives (k, ...) of all parts by parameters, kept for the next that asks for them."""
         known, asked, rates = self._last
         if known is not shape or asked != tuple(paths):
-            parts = self._parts(shape.design.changed(complex_steps(shape.design, paths)))
+            parts = self._parts(stepped(shape.design, paths))
             own = [part.shape[-axes:] for part, axes in zip(parts, (2, 2, 2, 1), strict=True)]
             rates = [np.imag(np.broadcast_to(p, (len(paths), *one))) / STEP for p, one in zip(parts, own, strict=True)]
             self._last = shape, tuple(paths), rates

@@ -108,11 +108,10 @@ class UnifiedBladeModel(SpatialModel):
 
     def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """From one channel with a complex step on each of its parameters in a batch."""
-
-        def margins(design: Any) -> Array:
-            return _fold_margins(shape.exact, shape.exact.moved_to(design).channel)
-
-        return stepped_rates(shape, paths, "channel.", len(shape.constraints), margins)
+        exact, count = shape.exact, len(shape.constraints)
+        return stepped_rates(
+            shape, paths, "channel.", count, lambda design: _fold_margins(exact, exact.moved_to(design).channel)
+        )
 
 
 def _narrowest_places(design: UnifiedBlade, exact: ExactUnifiedBlade) -> Reals:
