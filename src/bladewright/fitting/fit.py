@@ -44,6 +44,7 @@ from bladewright.fitting.placing import (
     without_finishing,
 )
 from bladewright.fitting.registration import axis_motion, composed, found_axes, registrations
+from bladewright.numerics.single_thread import single_threaded
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import choice
 from bladewright.section.unified import UnifiedSection
@@ -64,6 +65,7 @@ WHOLE_BLADE_HINT = "is it one whole blade, with both sides and both edges? If so
 """what to check where no design was found"""
 
 
+@single_threaded
 def fit(
     cloud: ArrayLike,
     start: Design | None = None,
