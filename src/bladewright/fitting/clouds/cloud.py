@@ -49,14 +49,26 @@ def checked_cloud(cloud: ArrayLike) -> Reals:
     Raises FitError for anything but finite numbers in two or three columns, fewer than 24 different points (100 in
     space), points on one line or one plane, and one side of a blade only.
     """
-    points = _numbers(cloud)
+    try:
+        points = np.asarray(cloud, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise FitError(f"the cloud is not an array of numbers ({error}): give (n, 2) or (n, 3) in metres") from error
+    if points.ndim != 2 or points.shape[1] not in (2, 3):
+        raise FitError(
+            f"the cloud has the shape {points.shape}: give (n, 2) with x and y, or (n, 3) with x, y and z, in metres"
+        )
+    bad = ~np.all(np.isfinite(points), axis=1)
+    if np.any(bad):
+        raise FitError(
+            f"{np.count_nonzero(bad)} of {len(points)} points are not finite numbers, the first of them point "
+            f"{int(np.argmax(bad))}: leave them out"
+        )
     different = np.unique(points[random_subset(len(points), MOST_POINTS)], axis=0)
     dimension = points.shape[1]
     if len(different) < FEWEST_POINTS[dimension]:
         raise FitError(
             f"the cloud has {len(different)} different points: at least {FEWEST_POINTS[dimension]} are needed; "
-            "give more "
-            "points of the blade's surface"
+            "give more points of the blade's surface"
         )
     middle = np.mean(different, axis=0)
     spread = np.linalg.svd(different - middle, compute_uv=False)
@@ -88,44 +100,21 @@ def refuse_several_blades(points: Reals) -> None:
         )
 
 
-def _numbers(cloud: ArrayLike) -> Reals:
-    try:
-        points = np.asarray(cloud, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise FitError(f"the cloud is not an array of numbers ({error}): give (n, 2) or (n, 3) in metres") from error
-    if points.ndim != 2 or points.shape[1] not in (2, 3):
-        raise FitError(
-            f"the cloud has the shape {points.shape}: give (n, 2) with x and y, or (n, 3) with x, y and z, in metres"
-        )
-    bad = ~np.all(np.isfinite(points), axis=1)
-    if np.any(bad):
-        raise FitError(
-            f"{np.count_nonzero(bad)} of {len(points)} points are not finite numbers, the first of them point "
-            f"{int(np.argmax(bad))}: leave them out"
-        )
-    return points
-
-
 def is_one_sided(points: Reals) -> bool:
     """Whether the points are a single sheet: a smooth one passes through the neighbours of most of them."""
     centred = points - np.mean(points, axis=0)
-    axes = np.linalg.svd(centred, full_matrices=False)[2]
-    own = centred @ axes.T
+    own = centred @ np.linalg.svd(centred, full_matrices=False)[2].T
     along, height = own[:, :-1], own[:, -1]
-    width = float(np.ptp(along[:, -1])) if along.shape[1] > 1 else float(np.ptp(along))
-    count = 14 if along.shape[1] == 1 else 24
     some = np.linspace(0, len(points) - 1, 200).astype(int)
-    neighbours = cKDTree(along).query(along[some], k=count)[1]
     residuals = []
-    for rows in neighbours:
+    for rows in cKDTree(along).query(along[some], k=14 if along.shape[1] == 1 else 24)[1]:
         t = along[rows] - np.mean(along[rows], axis=0)
         t = t / max(float(np.max(np.abs(t))), 1e-300)
-        powers = [np.ones(count), *t.T, *(t.T**2), *([t[:, 0] * t[:, 1]] if t.shape[1] > 1 else [])]
-        matrix = np.stack(powers, axis=-1)
+        matrix = np.column_stack([np.ones(len(t)), t, t**2, t[:, :1] * t[:, 1:]])
         found = np.linalg.lstsq(matrix, height[rows], rcond=0.03)[0]
         residuals.append(float(np.sqrt(np.mean((height[rows] - matrix @ found) ** 2))))
     # where sections are dense at the edges most neighbourhoods are of an edge, which is thin
-    return float(np.percentile(residuals, 90.0)) < THINNEST_BLADE * width
+    return float(np.percentile(residuals, 90.0)) < THINNEST_BLADE * float(np.ptp(along[:, -1]))
 
 
 def pitch_found(points: Reals) -> str | None:
@@ -138,7 +127,7 @@ def pitch_found(points: Reals) -> str | None:
         pieces = [some[rows] for rows in _pieces(some)]
         if len(pieces) < 2 or is_one_sided(pieces[0]):
             continue
-        found = [each for each in (_moved_onto(pieces[0], other) for other in pieces[1:]) if each is not None]
+        found = list(filter(None, (_moved_onto(pieces[0], other) for other in pieces[1:])))
         if found:
             return min(found)[1]
     return None
@@ -186,8 +175,7 @@ def _pitch_of_wheel(points: Reals) -> str | None:
         return float(np.median(np.max([tree.query(_turned(some, each))[0] for each in (turn, -turn)], axis=0)))
 
     whole = np.array([away(2.0 * np.pi / count) for count in BLADE_COUNTS])
-    inner = range(1, len(whole) - 1)
-    lowest = [i for i in inner if whole[i] < min(whole[i - 1], whole[i + 1])]
+    lowest = 1 + np.flatnonzero(whole[1:-1] < np.minimum(whole[:-2], whole[2:]))
     counts = [BLADE_COUNTS[i] for i in lowest if whole[i] < 0.5 * away(np.pi / BLADE_COUNTS[i])]
     return f"{360.0 / max(counts):.4g} deg" if counts else None
 
