@@ -6,6 +6,8 @@ not, nor are noses, end faces and rows of points.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +17,7 @@ from scipy.spatial import cKDTree
 
 from bladewright.blade.design.row_design import Arrangement
 from bladewright.fitting.clouds.thinning import random_subset
-from bladewright.numerics.elementary import cross2
+from bladewright.numerics.elementary import cross2, length, turned_left
 from bladewright.numerics.robust import median_deviation
 from bladewright.nurbs.basis import Reals
 
@@ -63,8 +65,7 @@ class Walls:
         return np.where(self.on_fillet, "fillet", np.where(self.on_curve, "wall", ""))
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Places:
+class _Unrolled(NamedTuple):
     """Points unrolled into the meridional plane and the pitch."""
 
     plane: Reals
@@ -74,13 +75,6 @@ class _Places:
     second: Reals
     """(n, 3) unit vectors of the second coordinate in the plane"""
 
-    def part(self, rows: NDArray[np.intp]) -> "_Places":
-        return _Places(plane=self.plane[rows], pitchwise=self.pitchwise[rows], second=self.second[rows])
-
-    def in_space(self, rows: NDArray[np.intp], vectors: Reals) -> Reals:
-        """Vectors (m, 2) at some of the points in space (m, 3)."""
-        return vectors[:, :1] * [1.0, 0.0, 0.0] + vectors[:, 1:] * self.second[rows]
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Sheet:
@@ -88,11 +82,20 @@ class _Sheet:
 
     points: Reals
     tangents: Reals
-    tree: cKDTree
+
+    @cached_property
+    def tree(self) -> cKDTree:
+        return cKDTree(self.points)
 
     @property
     def extent(self) -> float:
-        return float(np.sqrt(np.sum(np.ptp(self.points, axis=0) ** 2)))
+        return float(length(np.ptp(self.points, axis=0)))
+
+    def beside(self, plane: Reals, width: float) -> tuple[Reals, NDArray[np.intp], NDArray[np.bool_]]:
+        """Distances of places (n, 2) from the sheet's points, the nearest of these, and which stand above or below."""
+        away, nearest = self.tree.query(plane)
+        along = np.sum((plane - self.points[nearest]) * self.tangents[nearest], axis=1)
+        return away, nearest, np.abs(along) < width
 
     def off(self, plane: Reals) -> Reals:
         """Distances (n,) from the line through the sheet's points around each place (n, 2)."""
@@ -106,9 +109,9 @@ class _Sheet:
         """Distance from the curve up to which a point stands on it."""
         return ROW_WIDTH * median_deviation(self.off(self.points)) + LEAST_SCATTER * self.extent
 
-    def holds(self, plane: Reals, width: float) -> NDArray[np.bool_]:
-        """Which of places (n, 2) stand on the curve, less than two patches of a width from the sheet."""
-        return np.asarray((self.tree.query(plane)[0] < 2.0 * width) & (self.off(plane) <= self.within))
+    def holds(self, plane: Reals, reach: float) -> NDArray[np.bool_]:
+        """Which of places (n, 2) stand on the curve, nearer than `reach` to the sheet."""
+        return np.asarray((self.tree.query(plane)[0] < reach) & (self.off(plane) <= self.within))
 
 
 def walls_of(points: Reals, arrangement: Arrangement | None) -> Walls:
@@ -122,36 +125,37 @@ def walls_of(points: Reals, arrangement: Arrangement | None) -> Walls:
     return max((_walls(points, kind) for kind in kinds), key=lambda walls: np.count_nonzero(walls.on_curve))
 
 
-def _unrolled(points: Reals, arrangement: Arrangement) -> _Places:
+def _unrolled(points: Reals, arrangement: Arrangement) -> _Unrolled:
     x, y, z = points.T
     if arrangement == "linear":
-        return _Places(plane=np.stack([x, z], axis=-1), pitchwise=y, second=np.tile([0.0, 0.0, 1.0], (len(x), 1)))
+        return _Unrolled(np.stack([x, z], axis=-1), y, np.tile([0.0, 0.0, 1.0], (len(x), 1)))
     radius, angle = np.hypot(y, z), np.arctan2(y, z)
     middle = np.angle(np.mean(np.exp(1j * angle)))
-    return _Places(
-        plane=np.stack([x, radius], axis=-1),
-        pitchwise=radius * np.angle(np.exp(1j * (angle - middle))),
-        second=np.stack([np.zeros_like(angle), np.sin(angle), np.cos(angle)], axis=-1),
-    )
+    outward = np.stack([np.zeros_like(angle), np.sin(angle), np.cos(angle)], axis=-1)
+    return _Unrolled(np.stack([x, radius], axis=-1), radius * np.angle(np.exp(1j * (angle - middle))), outward)
 
 
 def _walls(points: Reals, arrangement: Arrangement) -> Walls:
     every, places = _unrolled(points, arrangement), list[Reals]()
     on_curve, on_fillet = np.zeros((2, len(points)), dtype=bool)
     rows = random_subset(len(points), LOOKED_AT)
-    some, near = every.part(rows), cKDTree(points[rows]).query(points[rows], k=PATCH)[1]
+    some = _Unrolled(*(each[rows] for each in every))
+    near = cKDTree(points[rows]).query(points[rows], k=PATCH)[1]
     extents, tangents = _extents(some.plane[near])
     sheets = (extents[:, 1] < FLAT * extents[:, 0]) & _are_areas(points[rows][near])
     label = _connected(near, tangents, sheets)
     for group in np.unique(label[sheets]):
         own = sheets & (label == group) & ~on_curve[rows]
         if np.count_nonzero(own) >= max(2 * PATCH, FEWEST_SHARE * len(rows)):
-            own = _whole(some.plane, tangents, own, sheets)
-            sheet = _Sheet(points=some.plane[own], tangents=tangents[own], tree=cKDTree(some.plane[own]))
+            # a wall may lie to both sides of its blade
+            one = _Sheet(points=some.plane[own], tangents=tangents[own])
+            alike = np.abs(cross2(tangents, one.tangents[one.tree.query(some.plane)[1]])) < TURN
+            own |= sheets & alike & one.holds(some.plane, one.extent)
+            sheet = _Sheet(points=some.plane[own], tangents=tangents[own])
             width = float(np.median(extents[own, 0]))
-            others = ~own & ~sheet.holds(some.plane, width)
+            others = ~own & ~sheet.holds(some.plane, 2.0 * width)
             if _is_wall(sheet, some, own, others, width):
-                on_curve |= sheet.holds(every.plane, width)
+                on_curve |= sheet.holds(every.plane, 2.0 * width)
                 on_fillet |= sheet.tree.query(every.plane)[0] < _fillet_height(sheet, some, points[rows], others, width)
                 places.append(sheet.points)
     return Walls(on_curve=on_curve, on_fillet=on_fillet & ~on_curve, places=tuple(places))
@@ -178,19 +182,10 @@ def _connected(near: NDArray[np.intp], tangents: Reals, sheets: NDArray[np.bool_
     return np.asarray(connected_components(graph, directed=False)[1], dtype=np.intp)
 
 
-def _whole(plane: Reals, tangents: Reals, own: NDArray[np.bool_], sheets: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """The points of all sheets on the curve of one: a wall may lie to both sides of its blade."""
-    sheet = _Sheet(points=plane[own], tangents=tangents[own], tree=cKDTree(plane[own]))
-    off, nearest = sheet.tree.query(plane)
-    along = np.abs(cross2(tangents, sheet.tangents[nearest])) < TURN
-    return own | (sheets & along & (off < sheet.extent) & (sheet.off(plane) <= sheet.within))
-
-
-def _is_wall(sheet: _Sheet, some: _Places, own: NDArray[np.bool_], others: NDArray[np.bool_], width: float) -> bool:
+def _is_wall(sheet: _Sheet, some: _Unrolled, own: NDArray[np.bool_], others: NDArray[np.bool_], width: float) -> bool:
     """Whether a sheet is wider along the pitch than the blade is thick beside it."""
-    away, nearest = sheet.tree.query(some.plane)
-    along = np.sum((some.plane - sheet.points[nearest]) * sheet.tangents[nearest], axis=1)
-    if np.count_nonzero(others & (away < 0.25 * sheet.extent) & (np.abs(along) < width)) < BESIDE:
+    away, _, across = sheet.beside(some.plane, width)
+    if np.count_nonzero(others & (away < 0.25 * sheet.extent) & across) < BESIDE:
         return False
     own_width = np.ptp(some.pitchwise[own][sheet.tree.query(sheet.points, k=BESIDE)[1]], axis=1)
     beside = cKDTree(some.plane[others]).query(sheet.points, k=BESIDE)[1]
@@ -198,20 +193,20 @@ def _is_wall(sheet: _Sheet, some: _Places, own: NDArray[np.bool_], others: NDArr
     return bool(np.median(own_width) > WIDER * np.quantile(thickness, 0.95))
 
 
-def _fillet_height(sheet: _Sheet, some: _Places, points: Reals, others: NDArray[np.bool_], width: float) -> float:
+def _fillet_height(sheet: _Sheet, some: _Unrolled, points: Reals, others: NDArray[np.bool_], width: float) -> float:
     """Height [m] above a wall that its fillet reaches at most; 0 where there is none.
 
     With a the cosine between the normals of wall and surface, a ball of radius r leaves the height r (1 - a), and ends
     below 2 r.
     """
-    away, nearest = sheet.tree.query(some.plane)
-    way = some.plane - sheet.points[nearest]
-    rows = np.flatnonzero(others & (np.abs(np.sum(way * sheet.tangents[nearest], axis=1)) < width))
+    away, nearest, across = sheet.beside(some.plane, width)
+    rows = np.flatnonzero(others & across)
     rows = rows[np.argsort(away[rows], kind="stable")]
     patches = points[others][cKDTree(points[others]).query(points[rows], k=FILLET_PATCH)[1]]
     normals = np.linalg.svd(patches - np.mean(patches, axis=1)[:, None], full_matrices=False)[2][:, 2]
-    across = np.stack([-sheet.tangents[nearest[rows], 1], sheet.tangents[nearest[rows], 0]], axis=-1)
-    facing = np.abs(np.sum(normals * some.in_space(rows, across), axis=1))
+    upright = turned_left(sheet.tangents[nearest[rows]])
+    in_space = upright[:, :1] * [1.0, 0.0, 0.0] + upright[:, 1:] * some.second[rows]
+    facing = np.abs(np.sum(normals * in_space, axis=1))
     windows = np.median(np.lib.stride_tricks.sliding_window_view(facing, min(BESIDE, len(rows))), axis=1)
     if windows[0] < AT_WALL or not np.any(windows < ON_FILLET):
         return 0.0
