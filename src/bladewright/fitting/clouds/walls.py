@@ -142,7 +142,9 @@ def _walls(points: Reals, arrangement: Arrangement) -> Walls:
     some = _Unrolled(*(each[rows] for each in every))
     near = cKDTree(points[rows]).query(points[rows], k=PATCH)[1]
     extents, tangents = _extents(some.plane[near])
-    sheets = (extents[:, 1] < FLAT * extents[:, 0]) & _are_areas(points[rows][near])
+    in_space = _extents(points[rows][near])[0]
+    # areas, and no rows of points
+    sheets = (extents[:, 1] < FLAT * extents[:, 0]) & (in_space[:, 1] > AREA * in_space[:, 0])
     label = _connected(near, tangents, sheets)
     for group in np.unique(label[sheets]):
         own = sheets & (label == group) & ~on_curve[rows]
@@ -162,16 +164,10 @@ def _walls(points: Reals, arrangement: Arrangement) -> Walls:
 
 
 def _extents(patches: Reals) -> tuple[Reals, Reals]:
-    """Extents (n, 2) of patches (n, k, 2) along their own axes, largest first, and the first axis (n, 2)."""
+    """Extents (n, d) of patches (n, k, d) along their own axes, largest first, and the first axis (n, d)."""
     centred = patches - np.mean(patches, axis=1)[:, None]
     _, sizes, axes = np.linalg.svd(centred, full_matrices=False)
     return sizes / np.sqrt(patches.shape[1]), axes[:, 0]
-
-
-def _are_areas(patches: Reals) -> NDArray[np.bool_]:
-    """Whether patches (n, k, 3) are areas, and not rows of points."""
-    sizes = np.linalg.svd(patches - np.mean(patches, axis=1)[:, None], compute_uv=False)
-    return np.asarray(sizes[:, 1] > AREA * sizes[:, 0])
 
 
 def _connected(near: NDArray[np.intp], tangents: Reals, sheets: NDArray[np.bool_]) -> NDArray[np.intp]:
