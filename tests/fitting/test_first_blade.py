@@ -12,7 +12,6 @@ from bladewright.fitting.initial_guess.blade import arranged_channels, first_bla
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Task, evaluated, searched
 from bladewright.fitting.model_selection.edges import nearest_from_other_edges
 from bladewright.fitting.model_selection.selection import GUESS_NOISE
-from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.nurbs.closest import closest_on_surface
 from bladewright.section.laws import Span
 from machines import COARSE, built, example
@@ -96,11 +95,9 @@ def test_noise_and_outliers_leave_a_first_blade_close(name: str) -> None:
     assert _share(first_blade(points, arrangement="annular")[0], clean) < 0.015
 
 
-def test_a_first_blade_has_the_structure_that_was_asked_for() -> None:
-    truth = _truth("compressor-stator")
-    asked = structure_of(truth.design)
-    found, _ = first_blade(_cloud(truth, 600), arrangement="annular", structure=asked, blade_count=20, length_unit="m")
-    assert structure_of(found) == asked
+def test_a_first_blade_has_the_blade_count_and_the_unit_that_were_asked_for() -> None:
+    points = _cloud(_truth("compressor-stator"), 600)
+    found, _ = first_blade(points, arrangement="annular", blade_count=20, length_unit="m")
     assert (found.blade_count, found.length_unit) == (20, "m")
 
 

@@ -19,7 +19,6 @@ from bladewright.fitting.initial_guess.channel import SlicedChannel, machine_coo
 from bladewright.fitting.initial_guess.slices import PLACES, fitted_law, unified_numbers
 from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.model_selection.reshaping import FIRST_BLADE, widened_where_feasible, with_feasible_edges
-from bladewright.fitting.model_selection.structure import Structure
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import plain_law
@@ -37,7 +36,6 @@ def first_blade(
     points: Reals,
     *,
     arrangement: Arrangement | None = None,
-    structure: Structure | None = None,
     blade_count: int | None = None,
     pitch: float | None = None,
     name: str = "blade",
@@ -66,7 +64,7 @@ def first_blade(
         except BladewrightError as error:
             refusal = refusal or error
             continue
-        first: Any = widened_where_feasible(found.design, structure or FIRST_BLADE)
+        first: Any = widened_where_feasible(found.design, FIRST_BLADE)
         return first, sliced.walls
     raise FitError(f"no blade that can be built was found near the points ({refusal}); {AXES_HINT}")
 
