@@ -111,8 +111,7 @@ class FirstChannel:
 
     def largest_distance(self, outline: Reals) -> float:
         """Largest distance [m] of points (n, 2) of an outline from the channel's four curves."""
-        t, ends = np.linspace(0.0, 1.0, 101), np.repeat([0.0, 1.0], 101)
-        t = np.concatenate([t, t])
+        t, ends = np.tile(np.linspace(0.0, 1.0, 101), 2), np.repeat([0.0, 1.0], 101)
         own = np.concatenate([self.position(t, ends), self.position(ends, t)])
         return float(np.max(cKDTree(own).query(outline)[0]))
 
@@ -174,15 +173,10 @@ class SlicedChannel:
     channel: FirstChannel
     plane: PlanePoints
     slices: Slices
-    outside: float
-    """mean distance of the points from the channel, past its walls, in chords"""
+    mean_distance: float
+    """mean distance of the points from the slices, and from the channel past its walls, in chords"""
     walls: tuple[Reals, ...]
     """(m, 2) places of hub and shroud on the outline of the points [m]"""
-
-    @property
-    def mean_distance(self) -> float:
-        """Mean distance of the points from the slices and from the channel, in chords."""
-        return self.slices.mean_distance + self.outside
 
 
 def machine_coordinates(points: Reals, arrangement: str) -> Reals:
@@ -246,7 +240,7 @@ def sliced_channel(machine: Reals, named: dict[str, Reals], *, revolved: bool) -
         channel=channel,
         plane=plane,
         slices=replace(slices, camber=camber),
-        outside=outside,
+        mean_distance=slices.mean_distance + outside,
         walls=(named["hub"], named["shroud"]),
     )
 
