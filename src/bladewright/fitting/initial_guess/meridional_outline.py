@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, Delaunay
 
-from bladewright.numerics.elementary import cross2
+from bladewright.numerics.elementary import cross2, length
 from bladewright.nurbs.basis import Reals
 
 LEAST_COVERED = 0.985
@@ -70,8 +70,7 @@ def corner_sets(line: Reals) -> list[list[Reals]]:
     """
     closed = np.concatenate([line, line[:1]])
     spread = np.ptp(line, axis=0)
-    away = np.sqrt(np.sum((np.diff(closed, axis=0) / spread) ** 2, axis=-1))
-    way = np.concatenate([[0.0], np.cumsum(away)])
+    way = np.concatenate([[0.0], np.cumsum(length(np.diff(closed, axis=0) / spread))])
     at = np.linspace(0.0, way[-1], FINE_PER_PLACE * RING_PLACES, endpoint=False)
     fine = np.stack([np.interp(at, way, closed[:, i]) for i in (0, 1)], axis=-1)
     ring = fine[::FINE_PER_PLACE]
@@ -118,9 +117,9 @@ def _costs(ring: Reals) -> Reals:
     return result
 
 
-def _turns(ring: Reals, steps_apart: int = 4) -> Reals:
+def _turns(ring: Reals) -> Reals:
     """Angles (RING_PLACES,) [rad] by which the boundary turns left around each place, at most 1.2."""
-    before, after = ring - np.roll(ring, steps_apart, axis=0), np.roll(ring, -steps_apart, axis=0) - ring
+    before, after = ring - np.roll(ring, 4, axis=0), np.roll(ring, -4, axis=0) - ring
     return np.clip(np.arctan2(cross2(before, after), np.sum(before * after, axis=-1)), 0.0, 1.2)
 
 
@@ -131,8 +130,6 @@ def _best_cuts(cost: Reals) -> list[int] | None:
     pair[steps[:, :, None] + steps != steps[:, None]] = np.inf
     middle, least = np.argmin(pair, axis=1), np.min(pair, axis=1)
     i, j = np.unravel_index(int(np.argmin(least + least.T)), least.shape)
-    return (
-        sorted([int(i), int(middle[i, j]), int(j), int(middle[j, i])])
-        if np.isfinite(least[i, j] + least[j, i])
-        else None
-    )
+    if not np.isfinite(least[i, j] + least[j, i]):
+        return None
+    return sorted([int(i), int(middle[i, j]), int(j), int(middle[j, i])])
