@@ -16,6 +16,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
+from bladewright.numerics.elementary import length
 from bladewright.numerics.robust import TUKEY_WIDTH, median_deviation
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber import bernstein, camber_tangents
@@ -76,16 +77,13 @@ class Slices:
     @property
     def chords(self) -> Reals:
         """(m,) distances from edge to edge."""
-        return np.asarray(np.sqrt(np.sum((self.camber[:, 3] - self.camber[:, 0]) ** 2, axis=-1)))
+        return length(self.camber[:, 3] - self.camber[:, 0])
 
     @property
-    def radii(self) -> tuple[Reals, Reals]:
-        """(m,) radii of the parabolas through leading and trailing edge: h^2 = 2 R t."""
-        chord = self.chords
-        first, last = (
-            np.array([np.interp(at, PLACES, row) for row in self.half]) for at in (EDGE_PLACE, 1.0 - EDGE_PLACE)
-        )
-        return first**2 / (2.0 * EDGE_PLACE * chord), last**2 / (2.0 * EDGE_PLACE * chord)
+    def radii(self) -> Reals:
+        """(2, m) radii of the parabolas through leading and trailing edge: h^2 = 2 R t."""
+        half = np.array([[np.interp(at, PLACES, row) for row in self.half] for at in (EDGE_PLACE, 1.0 - EDGE_PLACE)])
+        return half**2 / (2.0 * EDGE_PLACE * self.chords)
 
 
 def slices_of(plane: PlanePoints, turn: Reals, stations: Reals, count: int) -> Slices:
@@ -242,13 +240,13 @@ def unified_numbers(slices: Slices, counts: Mapping[str, tuple[int, ...]], scale
     scale = np.broadcast_to(scale, (len(v), len(PLACES)))
     chord, first, last = line[:, 3] - line[:, 0], line[:, 1] - line[:, 0], line[:, 3] - line[:, 2]
     extent = np.maximum(chord[:, 0], 0.02)
-    radii = [each / scale[:, end] for each, end in zip(slices.radii, (0, -1), strict=True)]
+    radii = slices.radii / scale[:, [0, -1]].T
     values = {
         "stagger": np.arctan2(chord[:, 1], extent),
         "metal_angle_in": np.arctan2(first[:, 1], np.maximum(first[:, 0], 1e-9)),
         "metal_angle_out": np.arctan2(last[:, 1], np.maximum(last[:, 0], 1e-9)),
-        "tangent_in": np.sqrt(np.sum(first**2, axis=-1)) / extent,
-        "tangent_out": np.sqrt(np.sum(last**2, axis=-1)) / extent,
+        "tangent_in": length(first) / extent,
+        "tangent_out": length(last) / extent,
         "leading_edge_radius": radii[0],
         "trailing_edge_radius": radii[1],
     }
