@@ -1,7 +1,5 @@
 """A first section from points in the plane."""
 
-from typing import Any
-
 import numpy as np
 
 from bladewright.blade.design.row_design import LengthUnit
@@ -40,21 +38,16 @@ def first_section(
     """
     points = without_isolated_points(np.unique(np.asarray(points, dtype=np.float64), axis=0))
     points = points[even_subset(points, DRAWN_POINTS)]
-    start, extent, metre = (
-        np.array([np.min(points[:, 0]), np.mean(points[:, 1])]),
-        np.ptp(points[:, 0]),
-        UNITS[length_unit],
-    )
+    start, extent = np.array([np.min(points[:, 0]), np.mean(points[:, 1])]), np.ptp(points[:, 0])
+    metre, longest = UNITS[length_unit], longest_chord(points)
     plane = PlanePoints(points=(points - start) / extent, v=np.zeros(len(points)))
     task = Task(points=points, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
     best: Match | None = None
     refusal: BladewrightError | None = None
     for turn in TURNS:
-        direction = longest_chord(points) + turn
-        if abs(direction) > STEEPEST:
+        if abs(longest + turn) > STEEPEST:
             continue
-        slices = slices_of(plane, np.array([direction]), np.zeros(1), 1)
-        numbers: dict[str, Any] = unified_numbers(slices, structure.counts, 1.0)
+        slices = slices_of(plane, np.array([longest + turn]), np.zeros(1), 1)
         first = start + extent * slices.camber[0, 0]
         size = float(slices.camber[0, 3, 0] - slices.camber[0, 0, 0])
         try:
@@ -66,7 +59,7 @@ def first_section(
                 axial_chord=extent * size / metre,
                 samples=structure.samples,
                 clustering=structure.clustering,
-                **numbers,
+                **unified_numbers(slices, structure.counts, 1.0),
             )
             found = searched(task, with_feasible_edges(guess), noise=NOISE, rounds=ROUNDS)
             found.design.build()
