@@ -169,8 +169,7 @@ def _first_blade(task: Task, kind: FitFamily, like: Any, header: DesignHeader) -
     That is one that is searched, or where the family has no blade near it the one that the search began with, whose
     edges miss no wall. Its sections and its channel are all that is taken, so that it need not be fit to be built.
     """
-    points, row = task.thinned(THOROUGH_POINTS).points, header.row(like)
-    first, outline = first_blade(points, name=header.name, length_unit=header.length_unit, **row)
+    first, outline = first_blade(task.thinned(THOROUGH_POINTS).points, **header.known(like))
     few = replace(task.thinned(QUICK_POINTS), free=FreeParameters(), bounds={}, walls=task.walls or outline)
     found = searched(few, first, noise=GUESS_NOISE, rounds=QUICK_ROUNDS).design
     radii = {path: value for path, value in found.parameters().items() if path.startswith(RADII)}

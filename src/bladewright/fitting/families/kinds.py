@@ -40,14 +40,13 @@ class DesignHeader:
     arrangement: Arrangement | None = None
     blade_count: int | None = None
 
-    def row(self, like: Any = None) -> dict[str, Any]:
-        """Arrangement, blade count and pitch [m]: those of a given design where they are not stated."""
-        stated = {"arrangement": self.arrangement, "blade_count": self.blade_count, "pitch": self.pitch}
+    def known(self, like: Any = None) -> dict[str, Any]:
+        """Its fields; arrangement, blade count and pitch [m] of a given design where they are not stated."""
         if like is None:
-            return stated
+            return vars(self)
         pitch = None if like.pitch is None else like.pitch * UNITS[like.length_unit]
-        known = {"arrangement": like.arrangement, "blade_count": like.blade_count, "pitch": pitch}
-        return {name: known[name] if value is None else value for name, value in stated.items()}
+        own = {"arrangement": like.arrangement, "blade_count": like.blade_count, "pitch": pitch}
+        return {name: own.get(name) if value is None else value for name, value in vars(self).items()}
 
 
 @dataclass(frozen=True)

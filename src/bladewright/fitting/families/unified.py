@@ -14,7 +14,7 @@ from bladewright.fitting.initial_guess.blade import AXES_HINT, first_blade
 from bladewright.fitting.initial_guess.section import first_section
 from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import Match, Task, searched
-from bladewright.fitting.model_selection.reshaping import with_feasible_edges
+from bladewright.fitting.model_selection.reshaping import FIRST_SECTION, with_feasible_edges
 from bladewright.fitting.model_selection.selection import FINAL_REDUCTION, THOROUGH_POINTS, selected_match
 from bladewright.fitting.model_selection.structure import reshaped, structure_of
 
@@ -31,11 +31,10 @@ def matched_unified(
     if start is not None:
         guessed = start if wanted is None else reshaped(start, wanted)
     elif task.dimension == 2:
-        points, asked = task.thinned(THOROUGH_POINTS).points, {} if wanted is None else {"structure": wanted}
-        guessed = first_section(points, name=header.name, length_unit=header.length_unit, **asked)
+        points, structure = task.thinned(THOROUGH_POINTS).points, wanted or FIRST_SECTION
+        guessed = first_section(points, structure=structure, name=header.name, length_unit=header.length_unit)
     else:
-        points, row = task.thinned(THOROUGH_POINTS).points, header.row(like)
-        guessed, outline = first_blade(points, name=header.name, length_unit=header.length_unit, **row)
+        guessed, outline = first_blade(task.thinned(THOROUGH_POINTS).points, **header.known(like))
         task = replace(task, outline=outline)
     first = task.free.applied(guessed) if isinstance(task.free, FreeParameters) else guessed
     if start is None and first is not guessed:
