@@ -120,7 +120,8 @@ class ClosedChannel:
 def _wall(line: Reals, shares: Reals) -> Reals:
     """Points of a wall, a line (n, 2) continued straight by shares (2,) of it: as few as follow it."""
     size = float(cumulative_length(line)[-1])
-    longer = _continued(line, shares * size)
+    first, last = (shares * size)[:, None] * _outward(line)
+    longer = np.concatenate([[line[0] + first], line, [line[-1] + last]])
     along = cumulative_length(longer)
     low, high = along[1] - WALL_MARGIN * size, along[-2] + WALL_MARGIN * size
     rows = longer
@@ -140,12 +141,6 @@ def _outward(line: Reals) -> Reals:
     places = np.arange(count, dtype=np.float64)
     ends = [polyfit(places, each[:count], 2) for each in (line, line[::-1])]
     return unit(np.stack([-each[1] for each in ends]))
-
-
-def _continued(line: Reals, lengths: Reals) -> Reals:
-    """A line (n, 2) that is continued straight past both ends by lengths (2,)."""
-    first, last = lengths[:, None] * _outward(line)
-    return np.concatenate([[line[0] + first], line, [line[-1] + last]])
 
 
 def _shares_off_axis(line: Reals, longest: float) -> Reals:
