@@ -10,6 +10,7 @@ import numpy as np
 from bladewright.fitting.families.section_shape import PLACES, SectionShape
 from bladewright.fitting.matching.scales import part_range
 from bladewright.fitting.models.sectioned import SINGLE_SECTION
+from bladewright.numerics.elementary import length
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber_angle import ANGLE, CamberAngle
 from bladewright.section.curvature_meanline import CurvatureMeanline
@@ -181,17 +182,13 @@ def _(like: SuctionPressure, shape: SectionShape) -> SuctionPressure:
         if heights:
             inner = side[1:-1]
             along, above = places_off_line(line, inner, np.clip(inner[:, 0], 0.01, 0.99))
-            places = _places(getattr(part, f"{name}_places"), knots)
+            places = getattr(part, f"{name}_places") or default_places(knots)
             changes[f"{name}_heights"] = tuple(np.interp(places, along, above).tolist())
     if part.pressure_thickness:
         knots = side_knots(len(part.pressure_thickness), part.pressure_knots)
-        places = _places(part.pressure_places, knots)
+        places = np.array(part.pressure_places or default_places(knots))
         changes["pressure_thickness"] = tuple(np.maximum(2.0 * shape.half(places), 1e-3).tolist())
     return replace(part, **changes)
-
-
-def _places(given: Any, knots: Reals) -> Reals:
-    return np.array(given) if given else default_places(knots)
 
 
 WEDGE_DIFFUSERS = (
@@ -281,7 +278,7 @@ def through_points(shape: SectionShape, count: int) -> PointsProfile:
     blunt = not np.allclose(shape.upper[-1], shape.lower[-1])
     around = np.concatenate([shape.upper[::-1], shape.lower[1:]])
     along = np.diff(around, axis=0)
-    steps, heading = np.sqrt(np.sum(along**2, axis=-1)), np.arctan2(along[:, 1], along[:, 0])
+    steps, heading = length(along), np.arctan2(along[:, 1], along[:, 0])
     turns = np.abs((np.diff(heading, append=heading[-1:]) + np.pi) % (2.0 * np.pi) - np.pi)
     way = np.concatenate([[0.0], np.cumsum(steps / np.sum(steps) + turns / np.sum(turns))])
     at = np.linspace(0.0, way[-1], count, endpoint=blunt)
