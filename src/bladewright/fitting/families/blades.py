@@ -28,6 +28,7 @@ from bladewright.fitting.families.sections import (
     PROMISING,
     compared,
     criterion,
+    designs_of,
     inliers_of,
     is_far,
     misfits,
@@ -48,6 +49,7 @@ from bladewright.fitting.model_selection.selection import (
 from bladewright.fitting.model_selection.structure import reshaped, structure_of
 from bladewright.fitting.model_selection.structure_search import SETTLED_RICH
 from bladewright.fitting.models.model import ModelShape, model_of
+from bladewright.numerics.elementary import turned_left, unit
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import Span, law_points
@@ -177,13 +179,13 @@ def _first_blade(task: Task, kind: FitFamily, like: Any, header: DesignHeader) -
     smaller = (found.changed({path: share * radii[path] for path in radii}) for share in SMALLER_RADII)
     closed = next(filter(can_be_built, chain([found], smaller)), found)
     task.progress("first design of the family")
-    try:
-        return _first(task, model_of(closed).shape(closed), kind, like, header)
-    except (DesignError, FitError) as refusal:
+    refusals = list[Exception]()
+    for blade in (closed, first):
         try:
-            return _first(task, model_of(first).shape(first), kind, like, header)
-        except (DesignError, FitError):
-            raise refusal from None
+            return _first(task, model_of(blade).shape(blade), kind, like, header)
+        except (DesignError, FitError) as error:
+            refusals.append(error)
+    raise refusals[0]
 
 
 def _band(task: Task, closed: ModelShape, v: float) -> Reals:
@@ -197,9 +199,8 @@ def _band(task: Task, closed: ModelShape, v: float) -> Reals:
         curve = section.curves[name]
         places, along = np.real(curve(feet.u[rows])), np.real(curve.derivative(feet.u[rows]))
         scale = np.real(section.scale(places[:, 0]))
-        left = np.stack([-along[:, 1], along[:, 0]], axis=-1) / np.sqrt(np.sum(along**2, axis=-1))[:, None]
-        outward = left if number == 0 else -left
-        found.append(places + (feet.heights[rows] / scale)[:, None] * outward)
+        left = unit(turned_left(along))
+        found.append(places + (feet.heights[rows] / scale)[:, None] * (left if number == 0 else -left))
     return np.concatenate(found)
 
 
@@ -220,9 +221,8 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
     Planes and kinds of section that those in the middle hardly tell apart are told apart by a short search of whole
     blades, of each plane with theta counted from where these meet it best.
     """
-    found = ClosedChannel(exact=closed.exact)
     built = [closed.exact.section(float(v)) for v in SECTION_SPANS]
-    middle = section_shape(built[MIDDLE])
+    found, middle = ClosedChannel(exact=closed.exact), section_shape(built[MIDDLE])
     found = replace(found, backwards=_backwards(found, kind, like, middle))
     band = _band(task, closed, float(SECTION_SPANS[MIDDLE]))
     part = None if like is None else with_mean_laws(like.section)
@@ -250,7 +250,7 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
         try:
             section = part_of_laws(_along_span(frame.shapes, chosen))
             design = _blade_of(found, frame, kind.blade, section, like, header)
-            blades.append((compared(few.turned(frame.turn), iter([design]))[0], frame))
+            blades.append((compared(few.turned(frame.turn), [design])[0], frame))
         except (DesignError, FitError) as error:
             refusal = error
     if not blades:
@@ -357,14 +357,8 @@ def _along_span(shapes: Sequence[SectionShape], middle: Match) -> list[Any]:
 def _matched(kind: FitFamily, shape: SectionShape, points: Reals, like: Any) -> list[Match]:
     """The best match of points (n, 2) of a section, of the structure of a given part, and those hardly worse."""
     task = Task(points=points, weights=np.ones(len(points)), free=_section_parameters, bounds={})
-    x, y = shape.start
-    designs = (
-        kind.section(
-            name="section", length_unit="m", chord=shape.chord, leading_edge_x=x, leading_edge_y=y, section=part
-        )
-        for part in kind.first_parts(shape, like)
-    )
-    tried = compared(task, designs)[:CONSIDERED]
+    header = DesignHeader(name="section", length_unit="m")
+    tried = compared(task, designs_of(kind, shape, kind.first_parts(shape, like), header, task))[:CONSIDERED]
     found = [searched(task, each.design, rounds=QUICK_ROUNDS, fading=True) for each in tried]
     return [found[number] for number in _alike(found)]
 

@@ -1,6 +1,6 @@
 """From points in the plane to a design of a family that is one part."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -68,19 +68,18 @@ def matched_section(
         check_bounds(start, task.free(start), task.bounds)
         found, reason = selected_match(task, start, target, like=None, guessed=False)
         return buildable_tolerance(found), reason
-    shape = None if start is not None or kind.contour_shape is None else kind.contour_shape(task.points)
-    if shape is None and start is None and kind.contour_shape is not None:
+    if start is not None or kind.contour_shape is None:
+        closed = start or first_section(task.points, name=header.name, length_unit=header.length_unit)
+        shape = section_shape(closed.build())
+    elif (contour := kind.contour_shape(task.points)) is not None:
+        # a smooth contour through all points in order has no outliers, and shows both ends of its chord line
+        shape, task = contour, replace(task, allow_outliers=False)
+        if isinstance(task.free, FreeParameters) and task.free.free is None:
+            task = replace(task, free=replace(task.free, fixed=(*task.free.fixed, "chord", "leading_edge_x")))
+    else:
         # its segments are laid on the section one by one, which must be as near as a match
         free = replace(task, free=FreeParameters(), bounds={})
         shape = section_shape(matched_unified(free, None, None, header, MatchTarget())[1])
-    elif shape is None:
-        closed = start or first_section(task.points, name=header.name, length_unit=header.length_unit)
-        shape = section_shape(closed.build())
-    else:
-        # a smooth contour through all points in order has no outliers, and shows both ends of its chord line
-        task = replace(task, allow_outliers=False)
-        if isinstance(task.free, FreeParameters) and task.free.free is None:
-            task = replace(task, free=replace(task.free, fixed=(*task.free.fixed, "chord", "leading_edge_x")))
     parts = kind.first_parts(shape, None if like is None else like.section)
     tried = compared(task.thinned(TRIAL_POINTS), designs_of(kind, shape, parts, header, task))
     structure = None if like is None else structure_of(like)
@@ -105,7 +104,7 @@ def nearest(task: Task, designs: Sequence[Design], target: MatchTarget, like: An
         except (DesignError, FitError) as error:
             refusal = error
             continue
-        if can_be_built_within(fresh[0], TOLERANCES[-1]):
+        if can_be_built(_within(fresh[0].design, TOLERANCES[-1])):
             found.append(fresh)
             if fresh[0].maximum < NEAR * fresh[0].model.chord:
                 break
@@ -167,7 +166,9 @@ def _through_points(
     as few points show an edge.
     """
     some, found = inliers_of(task, profile, QUICK_POINTS), None
-    starts = {_trailing_edge(each.design): each for each in reversed(tried)}
+    profiles: list[Any] = [each.design for each in tried]
+    edges = [each.section.outline(SINGLE_SECTION).trailing_edge.kind for each in profiles]
+    starts = dict(zip(reversed(edges), reversed(tried), strict=True))
     # one coordinate is free of each point but two, and four numbers place the section
     for count in OUTLINE_COUNTS if target.parameters is None else (target.parameters - 2,):
         fresh = {edge: _outlined(some, kind, each, count, header) for edge, each in starts.items()}
@@ -197,13 +198,7 @@ def _outlined(task: Task, kind: FitFamily, start: Match, count: int, header: Des
         found = searched(task, first, min_reduction=ROUGH_REDUCTION, fading=True)
     except (DesignError, FitError):
         return None
-    return found if can_be_built_within(found, TOLERANCES[-1]) else None
-
-
-def _trailing_edge(design: Any) -> str:
-    """The kind of a profile's trailing edge."""
-    edge: str = design.section.outline(SINGLE_SECTION).trailing_edge.kind
-    return edge
+    return found if can_be_built(_within(found.design, TOLERANCES[-1])) else None
 
 
 def designs_of(
@@ -224,7 +219,7 @@ def designs_of(
         yield task.free.applied(design) if isinstance(task.free, FreeParameters) else design
 
 
-def compared(task: Task, designs: Iterator[Design]) -> list[Match]:
+def compared(task: Task, designs: Iterable[Design]) -> list[Match]:
     """Searches from several designs, nearest first; raises the last refusal where none has a shape."""
     found, refusal = [], FitError("no structure of the family was tried")
     for design in designs:
@@ -248,16 +243,12 @@ def misfits(matches: Sequence[Match]) -> list[float]:
     return [float(np.sqrt(np.mean(np.minimum(each, bound) ** 2))) for each in distances]
 
 
-def can_be_built_within(match: Match, tolerance: float) -> bool:
-    """Whether the design can be built with a tolerance, that is, its sections do not cross themselves."""
-    design: Any = match.design
-    return can_be_built(replace(design, tolerance=max(design.tolerance, tolerance)))
+def _within(design: Any, tolerance: float) -> Any:
+    """The design with a tolerance of its native sides at least: its sections may cross themselves by less."""
+    return replace(design, tolerance=max(design.tolerance, tolerance))
 
 
 def buildable_tolerance(match: Match) -> Match:
     """The match with the finest tolerance of its native sides with which it can be built: edges may turn fast."""
-    for tolerance in TOLERANCES:
-        if can_be_built_within(match, tolerance):
-            design: Any = match.design
-            return replace(match, design=replace(design, tolerance=max(design.tolerance, tolerance)))
-    return match
+    designs = (_within(match.design, tolerance) for tolerance in TOLERANCES)
+    return replace(match, design=next(filter(can_be_built, designs), match.design))
