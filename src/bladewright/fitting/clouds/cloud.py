@@ -18,17 +18,15 @@ from bladewright.nurbs.basis import Reals
 FEWEST_POINTS = {2: 24, 3: 100}
 """points that a fit of a section and of a blade needs, by dimension; fewer leave most parameters undetermined."""
 FLATTEST = 1e-5
-"""thickness, of its extent, below which a cloud lies on a line or a plane: half and twice change nothing measured
-(design/matching_constants.md)"""
+"""thickness, of its extent, below which a cloud lies on a line or a plane (design/matching_constants.md)"""
 SHEET_SAMPLE = 3000
-"""points by which a cloud of one side only is recognised; it bounds the time: half and twice change nothing
-measured (design/matching_constants.md)"""
+"""points by which a cloud of one side only is recognised; it bounds the time (design/matching_constants.md)"""
 THINNEST_BLADE = 1.3e-3
-"""roughness, of its width, below which a cloud is a smooth sheet: one side and no blade; half and twice change nothing
-measured (design/matching_constants.md)"""
+"""roughness, of its width, below which a cloud is a smooth sheet: one side and no blade
+(design/matching_constants.md)"""
 COMPARED_POINTS = 6000, 2000
 """points among which neighbours are joined: many part blades that stand close, few join the rows of one
-(design/matching_constants.md)."""
+(design/matching_constants.md)"""
 NEIGHBOURS = 8
 """neighbours with which a point may be joined; it bounds the time (design/matching_constants.md)"""
 GAP = {2: 4.5, 3: 2.5}
@@ -40,7 +38,7 @@ SAME_SHAPE = 0.005
 BLADE_COUNTS = range(2, 152)
 """numbers of blades around the axis that are tried"""
 TURNED_POINTS = 300
-"""points that are turned by each trial pitch; it bounds the time (design/matching_constants.md)."""
+"""points that are turned by each trial pitch; it bounds the time (design/matching_constants.md)"""
 
 
 def checked_cloud(cloud: ArrayLike) -> Reals:

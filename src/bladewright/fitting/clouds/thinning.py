@@ -7,15 +7,13 @@ from scipy.spatial import cKDTree
 from bladewright.nurbs.basis import Reals
 
 MOST_POINTS = 20_000
-"""points, drawn at random, that stand for a cloud of any size where all would take too long: a million points take 3.9
-times as long as 10,000 (design/matching.md)"""
+"""points, drawn at random, that stand for a cloud of any size where all would take too long (design/matching.md)"""
 NEIGHBOURS, FEWEST_KNOWING = 16, 3
 """nearest neighbours of a point, and the most points that have an isolated one among theirs: of 3 % of outliers
 that are strewn over a twentieth of the extent half to nine tenths are isolated, and at most 3 of 5,000 good points
 (design/matching.md)"""
 ROUNDS = 6
-"""times that isolated points are sought among the rest: half and twice change nothing measured
-(design/matching_constants.md)"""
+"""times that isolated points are sought among the rest (design/matching_constants.md)"""
 
 
 def random_subset(count: int, most: int) -> NDArray[np.intp]:

@@ -45,7 +45,7 @@ wall are a fillet's, and down to which those above are (`ON_FILLET`): next to 1,
 with fillets, and 0.58 at most without, of a blade that leans by as much (design/matching.md)"""
 ROW_WIDTH, LEAST_SCATTER = 4.5, 1e-4
 """standard deviations of its scatter within which a point stands on a wall's curve, and the least such distance, of the
-wall's extent, for exact walls are curved within a patch (design/matching_constants.md)"""
+wall's extent: exact walls are curved within a patch (design/matching_constants.md)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -56,31 +56,26 @@ from bladewright.section.laws import Span, law_points
 from bladewright.section.unified_limits import RADII
 
 QUICK_ROUNDS = 4
-"""rounds of the search for the closed blade from which the family's first design is taken. Half and twice change
-nothing measured (design/matching_constants.md)."""
+"""rounds of the search for the closed blade that the first design is taken from (design/matching_constants.md)"""
 SMALLER_RADII = (0.8, 0.4, 0.2)
-"""shares of its edge radii with which a closed blade is tried that cannot be built with all, one after the other: the
-wedge diffuser needs less than 0.7 (design/matching.md)"""
+"""shares of its edge radii with which a closed blade is tried that cannot be built with all (design/matching.md)"""
 WALLS_HELD_NOTE = "hub and shroud are held as they are given"
 """note where the flow path is given"""
 ROUNDNESS_PLACE, ROUNDER_RATIO = 0.04, 1.3
 """chord fraction from an edge at which its roundness is compared, and the ratio of half thicknesses (`ROUNDER_RATIO`)
-from which one edge is the rounder one. With half of the ratio the vaned diffuser ends 1.1e-4 of the chord off, not
-8.7e-5; its double, and half and twice of the place, change nothing (design/matching_constants.md)."""
+from which one edge is the rounder one (design/matching_constants.md)"""
 CONTOUR_POINTS = 32
 """points of contours along the chord where no profile is near enough (design/matching.md)"""
 ALIKE = 1.1
 """ratio of the misfits of two kinds of section in the middle, such as with a round and with a blunt edge, up to which
-short searches of whole blades tell them apart, where these differ by more: the closed blade has round edges. Whole
-blades of an inflow nozzle differ by 2 %, of the backswept impeller by 88 % (design/matching.md)"""
+short searches of whole blades tell them apart: the closed blade has round edges (design/matching.md)"""
 CONFORMAL, UNROLLED = "m'-theta", "m-r*theta"
 """planes of stream surfaces in which sections are tried"""
 SAME_RADIUS = 1.02
 """ratio of the edges' radii below which both planes show the same sections but for their size, within 1 %"""
 BAND = 0.15
-"""half the width, in v, of the band of points that are taken for points of the section in its middle: by the closed
-blade's own section alone an inflow nozzle is met at 1.5e-4 of the chord with 72 parameters, not at 9.2e-5 with 64. Half
-and twice change nothing measured (design/matching_constants.md)."""
+"""half the width, in v, of the band of points that are taken for points of the section in its middle
+(design/matching_constants.md)"""
 
 
 def matched_blade(

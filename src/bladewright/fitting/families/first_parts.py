@@ -81,8 +81,8 @@ CURVATURE_MEANLINES = tuple(
 STRAIGHT = np.radians(0.5)
 """turning of a mean line [rad] below which the shape of its second derivative cannot be seen"""
 LEAST_CURVATURE = 0.1
-"""smallest control point of the second derivative to begin with, of the largest: of one sign, it always has a shape.
-With half and twice a section ends 4.6e-6 and 6.4e-6 of the chord off, not 1.8e-5 (design/matching_constants.md)."""
+"""smallest control point of the second derivative to begin with, of the largest: of one sign, it always has a shape
+(design/matching_constants.md)"""
 
 
 @first_part.register
@@ -145,8 +145,8 @@ SUCTION_PRESSURE = SuctionPressure(
 )
 """the part whose structure is tried where none is given"""
 WEDGES = (25.0, 50.0, 75.0)
-"""wedge angles of the leading edge that are tried [deg]: how far an edge extends is ambiguous, as the sides beside it
-may be taken for parts of it (design/matching_constants.md)"""
+"""wedge angles of the leading edge that are tried [deg]: the sides beside an edge may be taken for parts of it
+(design/matching_constants.md)"""
 
 
 def suction_pressures(shape: SectionShape) -> Sequence[SuctionPressure]:

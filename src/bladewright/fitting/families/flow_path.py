@@ -19,28 +19,24 @@ from bladewright.numerics.elementary import cumulative_length, unit
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 
 WALL_COUNTS = (3, 4, 5, 7, 9)
-"""points on each wall beside the blade; the fewest are taken that are near enough. Half leaves two parameters fewer,
-twice changes nothing (design/matching_constants.md)."""
+"""points on each wall beside the blade; the fewest are taken that are near enough (design/matching_constants.md)"""
 WALL_DISTANCE = 0.01
 """distance of a wall from the one that was found that is near enough, of its length: walls found by points alone are no
-better known, and they are parameters. Half and twice change nothing measured (design/matching_constants.md)."""
+better known (design/matching_constants.md)"""
 WALL_MARGIN = 0.1
-"""distance ahead of and behind the blade of the first and last of these points, of its length. Half and twice change
-nothing measured (design/matching_constants.md)."""
+"""distance ahead of and behind the blade of the first and last of these points, of its length
+(design/matching_constants.md)"""
 CONTINUATIONS = (0.8, 0.4, 0.2)
-"""lengths of the straight continuations at whose ends points stand, of the wall's: the first are taken that do not
-fold. Half and twice change nothing measured (design/matching_constants.md)."""
+"""lengths of the straight continuations at whose ends points stand, of the wall's: the first are taken that do not fold
+(design/matching_constants.md)"""
 DIRECTION_SHARE = 0.25
-"""share of a wall beside an end that shows where it goes on: by the last two of 201 places the hooked corner of a
-closed blade turned a shroud back, and its stream lines missed the edge (design/matching.md)"""
+"""share of a wall beside an end that shows where it goes on: the corner itself may be a hook (design/matching.md)"""
 LEAST_RADIUS = 0.6
-"""share of the radius at its end that the continuation may lose: it must not meet the axis. Half and twice change
-nothing measured (design/matching_constants.md)."""
+"""share of the radius at its end that the continuation may lose, not to meet the axis (design/matching_constants.md)"""
 EDGE_POINTS = 4
-"""points on an edge curve. Half and twice change nothing measured (design/matching_constants.md)."""
+"""points on an edge curve (design/matching_constants.md)"""
 EDGE_OVERREACH = 0.06
-"""length by which an edge curve reaches past the walls, of its length. Half and twice change nothing measured
-(design/matching_constants.md)."""
+"""length by which an edge curve reaches past the walls, of its length (design/matching_constants.md)"""
 OPPOSITE_CURVE = {"leading_edge": "trailing_edge", "trailing_edge": "leading_edge", "hub": "shroud", "shroud": "hub"}
 """the curve in whose place each stands when the flow comes from the other side"""
 CURVE_PLACES: Reals = np.linspace(0.0, 1.0, 201)

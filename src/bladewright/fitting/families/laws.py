@@ -19,8 +19,7 @@ MIDDLE = len(SECTION_SPANS) // 2
 FEASIBILITY_SPANS = Span(np.linspace(0.0, 1.0, 13))
 """places along the span at which laws must leave sections a shape"""
 LAW_COUNT = 3
-"""control points of each law along the span of a first blade. With half the pump inducer ends 1.7e-4 of the chord off,
-not 8.6e-6; twice changes nothing (design/matching_constants.md)."""
+"""control points of each law along the span of a first blade (design/matching_constants.md)"""
 
 
 def with_mean_laws(part: Any) -> Any:

@@ -18,8 +18,7 @@ INNER = (PLACES > 0.03) & (PLACES < 0.97)
 CAMBER_TERMS = 5
 """coefficients of the polynomial that multiplies x (1 - x) in a camber line (design/matching_constants.md)"""
 FINE_PLACES = 2001
-"""places along a curve between which it is taken as linear, within 1e-7 of its length. Half and twice change nothing
-measured (design/matching_constants.md)."""
+"""places along a curve between which it is taken as linear, within 1e-7 of its length (design/matching_constants.md)"""
 EDGE_PLACE = 0.02
 """chord fraction, from an edge, at which the half thickness bounds its radius (design/matching_constants.md)"""
 

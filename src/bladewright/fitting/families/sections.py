@@ -40,20 +40,19 @@ CONSIDERED, PROMISING = 3, 3.0
 """first designs that are searched on at most, and ratio of their misfits to the least (`PROMISING`): a search of a few
 rounds and control points tells them apart by about that much (design/matching.md)"""
 EXACT = 1e-9
-"""misfit below which matches are alike, of the chord: the native curves of sections are as near; half and twice
-change nothing measured (design/matching_constants.md)"""
+"""misfit below which matches are alike, of the chord: the native curves of sections are as near
+(design/matching_constants.md)"""
 OUTLINE_COUNTS = (24, 32, 44)
 """numbers of points of contours that are tried in turn: searches of more end further off (design/matching.md)"""
 OUTLINE_DEVIATION = 1e-4
 """largest distance with which a contour gets no further points where nothing is asked for, and with which exact points
-need no contour, of the chord: a fifth of what acceptance trusts. Half and twice change nothing measured
-(design/matching_constants.md)."""
+need no contour, of the chord (design/matching_constants.md)"""
 BESIDE, BY_CHANCE = 16, 1e-3
 """points beside each other by which a misfit is told that stays with an edge, which seldom has more, and probability
 that noise alone looks like one (`BY_CHANCE`), by the chi-squared test (Pearson 1900) [-]"""
 TOLERANCES = (0.0, 1e-8, 1e-6)
-"""tolerances of the native sides, of the chord, finest first: the first is taken that the design can be built with;
-half and twice change nothing measured (design/matching_constants.md)"""
+"""tolerances of the native sides, of the chord, finest first: the first is taken that the design can be built with
+(design/matching_constants.md)"""
 
 
 def matched_section(

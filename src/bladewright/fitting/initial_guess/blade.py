@@ -27,7 +27,7 @@ AXES_HINT = "x must be the machine axis: say which column is which (--columns), 
 """what may be wrong with a cloud near which no blade is found"""
 DRAWN_POINTS, SEARCHED_POINTS = 1200, 500
 """points that show the slices, and points of the search (`SEARCHED_POINTS`); they bound the time
-(design/matching_constants.md)."""
+(design/matching_constants.md)"""
 NOISE, ROUNDS = 0.03, 3
 """noise assumed of a first blade, of the chord, and rounds of its search (design/matching_constants.md)"""
 
@@ -89,27 +89,25 @@ def _blade_of(sliced: SlicedChannel, header: dict[str, Any]) -> UnifiedBlade:
 
 
 ANNULAR_AT_ONCE = 3e-3
-"""mean distance, in chords, with which slices around the axis are accepted without comparing the other arrangement.
-Half and twice change nothing measured (design/matching_constants.md)."""
+"""mean distance, in chords, with which slices around the axis are accepted without comparing the other arrangement
+(design/matching_constants.md)"""
 CLEARLY_LINEAR = 0.5
-"""ratio of mean distances, linear to annular, below which a blade belongs to a cascade. Half and twice change nothing
-measured (design/matching_constants.md)."""
+"""ratio of mean distances, linear to annular, below which a blade belongs to a cascade
+(design/matching_constants.md)"""
 ROW_BINS, ROW_HEIGHT = 16, 0.03
 """parts of x in each of which the lowest point is sought; points up to `ROW_HEIGHT` of the span above it belong to the
-same row. Half and twice change nothing measured (design/matching_constants.md)."""
+same row (design/matching_constants.md)"""
 ROW_DEGREE, ROW_TURNS, ROW_OUTLIER = 5, 5, 6.7
 """degree of the row's line, iterations in which it is found (`ROW_TURNS`), and the distance, in medians, beyond which a
-point does not belong to it (`ROW_OUTLIER`). Half and twice change nothing measured (design/matching_constants.md)."""
+point does not belong to it (`ROW_OUTLIER`) (design/matching_constants.md)"""
 CLEARER_ROW, CLEAR_ROW = 0.5, 1e-3
 """ratio of the scatter of rows about the axis to that on planes which decides; rows on planes must also scatter by less
-than `CLEAR_ROW` of the span. Rows of Aachen's stator with noise scatter by 1.7e-4 of the span about the axis, and by
-1.4e-3 on planes (design/matching.md)."""
+than `CLEAR_ROW` of the span (design/matching.md)"""
 
 UPRIGHT = -0.5 * np.pi
 """angle about x that brings y to z [rad]"""
 SPAN_POINTS = 600
-"""points by which the span's axis is told; it bounds the time: half and twice change nothing
-(design/matching_constants.md)."""
+"""points by which the span's axis is told; it bounds the time (design/matching_constants.md)"""
 
 
 def arranged_channels(points: Reals, arrangement: Arrangement | None) -> tuple[Arrangement, list[SlicedChannel]]:

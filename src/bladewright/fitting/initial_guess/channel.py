@@ -157,13 +157,13 @@ LAW_COUNT = 4
 """control points of their laws along the span (design/first_guesses.md)"""
 BORDER_SHARE, BORDER_POINTS, CORNER_MARGIN = 0.06, 24, 0.12
 """share of the points (and at least `BORDER_POINTS`) beside a piece of the outline that show whether the sides meet
-there; they keep clear of its ends by `CORNER_MARGIN` of it (design/first_guesses.md)."""
+there; they keep clear of its ends by `CORNER_MARGIN` of it (design/first_guesses.md)"""
 WALL_OPENING_RATIO = 1.4
-"""ratio of the openings from which two opposite pieces are the walls (design/first_guesses.md)."""
+"""ratio of the openings from which two opposite pieces are the walls (design/first_guesses.md)"""
 RADIAL_SHARE = 0.05
-"""axial share of the way from edge to edge below which the rounder edge leads (design/first_guesses.md)."""
+"""axial share of the way from edge to edge below which the rounder edge leads (design/first_guesses.md)"""
 ROUNDER_RATIO = 1.2
-"""ratio of radii from which one edge is the rounder one (design/first_guesses.md)."""
+"""ratio of radii from which one edge is the rounder one (design/first_guesses.md)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -8,20 +8,19 @@ from bladewright.numerics.elementary import cross2, length
 from bladewright.nurbs.basis import Reals
 
 LEAST_COVERED = 0.985
-"""share of the points that the outline must enclose. Half and twice change nothing measured
-(design/matching_constants.md)."""
+"""share of the points that the outline must enclose (design/matching_constants.md)"""
 RING_PLACES = 120
 """places of the boundary between which corners are sought; the search takes their cube in time
-(design/first_guesses.md)."""
+(design/first_guesses.md)"""
 FINE_PER_PLACE, CORNER_REACH = 10, 14
 """places of the finer ring for each of them, and how far on it the corner is sought around a cut (`CORNER_REACH`)
 (design/first_guesses.md)"""
 NEAR_PLACES = 3
 """places within which two corners are the same (design/first_guesses.md)"""
 SHORTEST_CURVE = 0.02
-"""shortest of the four curves, of the boundary (design/first_guesses.md)."""
+"""shortest of the four curves, of the boundary (design/first_guesses.md)"""
 CORNER_WORTH = 0.01
-"""what a corner of one radian is worth, in squared distances left by the curves (design/first_guesses.md)."""
+"""what a corner of one radian is worth, in squared distances left by the curves (design/first_guesses.md)"""
 
 
 def alpha_boundary(places: Reals) -> Reals:

@@ -15,7 +15,7 @@ from bladewright.section.checks import UNITS
 from bladewright.section.unified import UnifiedSection
 
 DRAWN_POINTS = 600
-"""points that a first section is drawn through; it bounds the time (design/matching_constants.md)."""
+"""points that a first section is drawn through; it bounds the time (design/matching_constants.md)"""
 TURNS: tuple[float, ...] = (0.0, 0.2, -0.2, 0.5, -0.5)
 """directions of the chord that are tried, from the longest distance between two points [rad]: that of a thick section
 may lie across it"""

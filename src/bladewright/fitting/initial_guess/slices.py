@@ -40,7 +40,7 @@ EDGE_PLACE = 0.02
 NOSE, LEAST_NOSE_WEIGHT, NOSE_REACH = 0.08, 0.05, 0.2
 """distance from an edge, of the chord, from which points count in full, and their weight at the edge: the nose of a
 cambered section does not point along the chord, and the middle across the chord there is not that of the section. The
-edge is the point furthest along the camber's tangent, among those within `NOSE_REACH` (design/first_guesses.md)."""
+edge is the point furthest along the camber's tangent, among those within `NOSE_REACH` (design/first_guesses.md)"""
 EDGE_SHARE = 60
 """one in so many points of a band stands at an edge (design/first_guesses.md)"""
 
