@@ -7,7 +7,7 @@ import pytest
 
 from bladewright.fitting.assessment.acceptance import MatchTarget
 from bladewright.fitting.model_selection import structure_search
-from bladewright.fitting.model_selection.structure_search import MOST_PREDICTIONS, WORTHWHILE, StructureSearch, _Aim
+from bladewright.fitting.model_selection.structure_search import MOST_PREDICTIONS, WORTHWHILE, StructureSearch
 
 RICH = 40
 
@@ -32,14 +32,15 @@ def found_by(monkeypatch):
             return None if prediction.parameters in shapeless else match(prediction.parameters)
 
         monkeypatch.setattr(structure_search, "largest_of", lambda each, _: largest(each.count))
-        aim = _Aim(
+        found, nearest = StructureSearch(task=None, samples=0, first=None)._fewest(
+            match(RICH),
+            None,
             predicted=lambda about: [
                 SimpleNamespace(parameters=n) for n in range(RICH, predicted(about.count) - 1, -1)
             ],
-            searched=search,
+            search=search,
             kept=lambda each: each.count >= enough,
         )
-        found, nearest = StructureSearch(task=None, samples=0, first=None)._fewest(match(RICH), None, aim)
         return found and found.count, nearest and nearest.count, searched
 
     return run

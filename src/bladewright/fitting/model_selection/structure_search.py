@@ -89,18 +89,6 @@ again bring a cubic spline nearer by (3/4)^4, a third, half as many by a fifth (
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Aim:
-    """What a match of few parameters is to keep."""
-
-    predicted: Callable[[LinearModel], list[Prediction]]
-    """the structures that are predicted to keep it, with fewer and fewer parameters"""
-    searched: Callable[[LinearModel, Prediction], Match | None]
-    """the match of one of them; None where it has no shape"""
-    kept: Callable[[Match], bool]
-    """whether a match keeps it"""
-
-
-@dataclass(frozen=True, kw_only=True)
 class StructureSearch:
     """The search for the structure of few parameters that keeps an aim."""
 
@@ -211,7 +199,7 @@ class StructureSearch:
             limit = NEAR if exact or least <= NEAR * chord else NEAR_EVERYWHERE
             return not has_systematic_misfit(match) or largest <= max(limit * chord, NEAR_RICH * least)
 
-        found, nearby = self._fewest(rich, None, _Aim(predicted=predicted, searched=self._searched, kept=kept))
+        found, nearby = self._fewest(rich, None, predicted=predicted, search=self._searched, kept=kept)
         return found or nearby or rich
 
     def near_everywhere(self, rich: Match) -> Match:
@@ -238,8 +226,7 @@ class StructureSearch:
 
         found, nearest = rich if kept(rich) and not is_refused(rich) else None, None
         if kept(rich) or has_systematic_misfit(rich):
-            aim = _Aim(predicted=predicted, searched=reweighted_search, kept=kept)
-            found, nearest = self._fewest(rich, found, aim)
+            found, nearest = self._fewest(rich, found, predicted=predicted, search=reweighted_search, kept=kept)
         if found is not None:
             return found, ""
         nearest = min(filter(None, (rich, nearest)), key=lambda each: largest_of(each, rich))
@@ -247,33 +234,40 @@ class StructureSearch:
             return self.well_predicted(rich), NOISE_REASON.format(1e3 * rich.noise_estimate.noise)
         return nearest, "no structure was found that keeps the tolerance"
 
-    def _fewest(self, rich: Match, found: Match | None, aim: _Aim) -> tuple[Match | None, Match | None]:
-        """The match of fewest parameters found that keeps an aim, and the nearest of those that do not.
+    def _fewest(
+        self,
+        rich: Match,
+        found: Match | None,
+        *,
+        predicted: Callable[[LinearModel], list[Prediction]],
+        search: Callable[[LinearModel, Prediction], Match | None],
+        kept: Callable[[Match], bool],
+    ) -> tuple[Match | None, Match | None]:
+        """The match of fewest parameters found that is `kept`, and the nearest of those that are not.
 
-        Each structure is predicted about the last match, with more control points in every law, as a linear model about
-        a rich match does not reach as far as narrow structures lie. Where that leads no nearer, or nothing is predicted
-        there that is wider than what has failed, one between this and the last that did is searched. A rich match that
-        keeps the aim is the first of them, so that none is searched that would save little.
+        Each structure is `predicted` to be kept about the last match, with more control points in every law, as a
+        linear model about a rich match does not reach as far as narrow structures lie. Where its `search` leads no
+        nearer, or nothing is predicted there that is wider than what has failed, one between this and the last that did
+        is searched. A rich match that is kept is the first of them, so that none is searched that would save little.
         """
         nearest, least, about, failed, narrowest = None, np.inf, rich, 0, True
         for _ in range(self.predictions):
             model, last = self._model(about), found or rich
-            most = WORTHWHILE * len(last.problem.paths) if found or aim.kept(rich) else np.inf
-            predictions = aim.predicted(model)
+            most = WORTHWHILE * len(last.problem.paths) if found or kept(rich) else np.inf
+            predictions = predicted(model)
             promising = [each for each in predictions if failed < each.parameters <= most]
             if not predictions and about is rich:
                 promising = eliminated(model, 0)[:1]
             if promising:
                 chosen = promising[-1 if narrowest else len(promising) // 2]
-                fresh = aim.searched(model, chosen)
-                match = None if fresh is None else self._built(fresh)
-                kept = match is not None and aim.kept(match)
-                if predictions and not kept:
+                fresh = search(model, chosen)
+                match = fresh and self._built(fresh)
+                enough = match is not None and kept(match)
+                if predictions and not enough:
                     failed = chosen.parameters
-                nearer = match is not None and largest_of(match, rich) < least
-                if match is not None and (kept or nearer):
-                    found, nearest = (match, nearest) if kept else (found, match)
-                    least = np.inf if kept else largest_of(match, rich)
+                if match is not None and (enough or largest_of(match, rich) < least):
+                    found, nearest = (match, nearest) if enough else (found, match)
+                    least = np.inf if enough else largest_of(match, rich)
                     about, narrowest = self._widened(match), True
                     continue
             if about is last and not (promising and predictions):
