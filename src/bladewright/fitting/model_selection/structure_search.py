@@ -179,8 +179,8 @@ class StructureSearch:
         """The match of fewest parameters that is at the cloud's noise, or where its misfit is none, near everywhere."""
         model = self._model(rich)
         # what the rich match leaves is the noise, where its neighbours share none of it (Morozov 1966)
-        noise = max((each.deviation for each in eliminated(model, 0)[:1]), default=0.0)
-        noise *= 1.0 + NOISE_QUANTILE / np.sqrt(2.0 * model.points)
+        whole = model.prediction(model.counts)
+        noise = (0.0 if whole is None else whole.deviation) * (1.0 + NOISE_QUANTILE / np.sqrt(2.0 * model.points))
         systematic, exact, least = has_systematic_misfit(rich), is_exact(rich), largest_of(rich, rich)
 
         def predicted(model: LinearModel) -> list[Prediction]:
@@ -256,8 +256,8 @@ class StructureSearch:
             most = WORTHWHILE * len(last.problem.paths) if found or kept(rich) else np.inf
             predictions = predicted(model)
             promising = [each for each in predictions if failed < each.parameters <= most]
-            if not predictions and about is rich:
-                promising = eliminated(model, 0)[:1]
+            if not predictions and about is rich and (whole := model.prediction(model.counts)):
+                promising = [whole]
             if promising:
                 chosen = promising[-1 if narrowest else len(promising) // 2]
                 fresh = search(model, chosen)
