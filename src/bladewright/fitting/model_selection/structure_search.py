@@ -298,15 +298,11 @@ class StructureSearch:
 
     def _searched(self, model: LinearModel, prediction: Prediction) -> Match | None:
         """The match of a predicted structure; None where it has no shape."""
-        start = self._start(model, prediction)
-        if start is None:
-            return None
-        try:
-            return searched(
-                self.task, start.design, rounds=QUICK_ROUNDS, noise=prediction.rms, min_reduction=ROUGH_REDUCTION
-            )
-        except (FitError, DesignError):
-            return None
+        quick = partial(searched, rounds=QUICK_ROUNDS, min_reduction=ROUGH_REDUCTION)
+        with suppress(FitError, DesignError):
+            start = self._start(model, prediction)
+            return start and quick(self.task, start.design, noise=prediction.rms)
+        return None
 
     def _start(self, model: LinearModel, prediction: Prediction) -> Match | None:
         """The predicted design or the nearest to the rich match; the first design in its structure if none has a shape.
@@ -319,18 +315,13 @@ class StructureSearch:
             partial(model.designed, replace(prediction, change=np.zeros_like(prediction.change))),
             partial(reshaped, self.first, structure),
         )
-        found: Match | None = None
-        for number, design in enumerate(designs):
-            if number == len(designs) - 1 and found is not None:
+        found: list[Match] = []
+        for design in designs:
+            if found and (design is designs[-1] or found[0].misfit < LARGEST_PREDICTED * prediction.rms):
                 break
-            try:
-                fresh = evaluated(self.task, design(), noise=prediction.rms)
-            except (DesignError, FitError):
-                continue
-            found = fresh if found is None or fresh.misfit < found.misfit else found
-            if found.misfit < LARGEST_PREDICTED * prediction.rms:
-                break
-        return found
+            with suppress(DesignError, FitError):
+                found.append(evaluated(self.task, design(), noise=prediction.rms))
+        return min(found, key=lambda each: each.misfit, default=None)
 
 
 REWEIGHTED_SEARCHES = 6
