@@ -333,23 +333,20 @@ same ratio as the one before. Half and twice change nothing measured (design/mat
 
 def nearest_to_tolerance(task: Task, start: Match, weights: Reals, rich: Match, tolerance: float) -> Match:
     """The match nearest to a tolerance [m] of searches of one structure, whose weights (n,) rise with the distances."""
-    best, design, noise, before = start, start.design, start.rms, np.inf
+    tried, last, before = list[Match](), start, np.inf
     weights = np.where(weights > 0.0, weights, task.weights)
     for left in reversed(range(REWEIGHTED_SEARCHES)):
-        if best is not start and largest_of(best, rich) <= tolerance:
-            break
         weighted = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
         try:
-            found = searched(weighted, design, noise=noise, rounds=1, min_reduction=ROUGH_REDUCTION)
+            last = searched(weighted, last.design, noise=last.rms, rounds=1, min_reduction=ROUGH_REDUCTION)
         except (FitError, DesignError):
             break
-        excess = largest_of(found, rich) - tolerance
-        best = found if best is start or tolerance + excess < largest_of(best, rich) else best
-        if (excess / before) ** left * excess > TOUCHED * tolerance:
+        tried.append(last)
+        excess = largest_of(last, rich) - tolerance
+        if excess <= 0.0 or (excess / before) ** left * excess > TOUCHED * tolerance:
             break
-        design, noise, before = found.design, found.rms, excess
-        weights = reweighted(weights, found.state.footpoints.distances, tolerance)
-    return best
+        before, weights = excess, reweighted(weights, last.state.footpoints.distances, tolerance)
+    return min(tried, key=lambda each: largest_of(each, rich), default=start)
 
 
 def largest_of(match: Match, rich: Match) -> float:
