@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import LinAlgError, cho_factor, cho_solve
+from scipy.linalg import LinAlgError, block_diag, cho_factor, cho_solve
 
 from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.matching.search import Match
@@ -188,15 +188,10 @@ class LinearModel:
     def subspace(self, counts: Sequence[Counts]) -> tuple[Reals, Reals]:
         """The rich structure's parameters (k, j) by those of a narrower one, and their change (k,) to the nearest."""
         laws = [self._law_subspace(i, each) for i, each in enumerate(counts)]
-        width = len(self._others) + sum(part.shape[1] for part, *_ in laws)
-        found, shift = np.zeros((self.slopes.shape[1], width)), np.zeros(self.slopes.shape[1])
-        found[self._others, np.arange(len(self._others))] = 1.0
-        first = len(self._others)
-        for columns, (part, _, _, change) in zip(self._columns, laws, strict=True):
-            last = first + part.shape[1]
-            found[columns, first:last] = part
-            shift[columns] = change
-            first = last
+        places, kept = np.concatenate([self._others, *self._columns]), np.eye(len(self._others))
+        found, shift = block_diag(kept, *(part for part, *_ in laws)), np.zeros(len(places))
+        found[places] = found.copy()
+        shift[places] = np.concatenate([np.zeros(len(kept)), *(change for *_, change in laws)])
         return found, shift
 
     def _law_subspace(self, law: int, counts: Counts) -> tuple[Reals, Reals, NDArray[np.bool_], Reals]:
