@@ -7,7 +7,7 @@ Draper and Smith 1998, section 15.3; Lawson 1961 (weights).
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -209,20 +209,18 @@ class LinearModel:
         return self._known[key]
 
     def structured(self, counts: Sequence[Counts]) -> Structure:
-        """The structure with these numbers of control points."""
-        structure = self.structure
-        for law, each in zip(self.laws, counts, strict=True):
-            structure = structure.resized(law.name, each)
-        return structure
+        """The structure with these numbers of control points, and the samples that they need."""
+        changed = {law.name: each for law, each in zip(self.laws, counts, strict=True)}
+        return replace(self.structure, counts={**self.structure.counts, **changed}).with_samples(self.samples)
 
     def designed(self, prediction: Prediction) -> Any:
         """The predicted design, its laws within the family's bounds."""
-        paths, structure = self.match.problem.paths, self.structured(prediction.counts)
-        values = self.match.problem.values_of(self.design) + self.match.problem.scales.size * prediction.change
-        scales = scales_of(self.design, paths, self.chord)
+        problem = self.match.problem
+        values = problem.values_of(self.design) + problem.scales.size * prediction.change
+        scales = scales_of(self.design, problem.paths, self.match.model.chord)
         values = np.clip(values, scales.low, scales.high)
-        rich = self.design.changed({path: float(value) for path, value in zip(paths, values, strict=True)})
-        return reshaped(rich, structure.with_samples(self.samples))
+        rich = self.design.changed(dict(zip(problem.paths, values.tolist(), strict=True)))
+        return reshaped(rich, self.structured(prediction.counts))
 
 
 SURPLUS_DIVISOR = 12

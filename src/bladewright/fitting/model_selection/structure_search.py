@@ -309,11 +309,10 @@ class StructureSearch:
 
         Predictions that go too far are no nearer than the rich match.
         """
-        structure = model.structured(prediction.counts).with_samples(self.samples)
         designs = (
             partial(model.designed, prediction),
             partial(model.designed, replace(prediction, change=np.zeros_like(prediction.change))),
-            partial(reshaped, self.first, structure),
+            partial(reshaped, self.first, model.structured(prediction.counts)),
         )
         found: list[Match] = []
         for design in designs:
