@@ -66,12 +66,11 @@ class LinearModel:
     """The residuals of a match as a linear function of its laws' control points."""
 
     def __init__(self, match: Match, samples: int) -> None:
-        problem = match.problem
+        problem, size = match.problem, match.problem.scales.size
         self.match, self.design, self.samples = match, match.design, samples
         self.structure = structure_of(match.design)
         self.points, self.dimension = match.state.footpoints.points.shape
-        self.chord = match.model.chord
-        self.slopes = problem.cloud_residuals.slopes(match.state, problem.paths) * problem.scales.size
+        self.slopes = problem.cloud_residuals.slopes(match.state, problem.paths) * size
         self.residuals = problem.cloud_residuals.residuals(match.state)
         """(m,) those of the points first, in chords"""
         roots = problem.cloud_residuals.roots
@@ -79,35 +78,25 @@ class LinearModel:
         self.residuals[: self.points] /= np.where(roots > 0.0, roots, np.inf)
         self._penalty = problem.regularisation.matrix
         self._penalised = problem.regularisation.residuals(problem.vector(match.design))
-        self._set_laws(match)
-        self.weighted(roots**2)
+        place, values = {path: i for i, path in enumerate(problem.paths)}, match.design.parameters()
 
-    def _set_laws(self, match: Match) -> None:
-        paths, size, values = match.problem.paths, match.problem.scales.size, match.design.parameters()
-        place = {path: i for i, path in enumerate(paths)}
-        self.laws: list[ResizableLaw] = []
-        self._columns: list[NDArray[np.intp]] = []
-        self._free: list[NDArray[np.bool_]] = []
-        self._size: list[float] = []
-        self._values: list[Reals] = []
-        for law in resizable_laws(match.design):
-            own = law.paths(match.design)
-            if not own:
-                continue
-            free = np.array([path in place for path in own])
+        def may_change(law: ResizableLaw) -> bool:
             # a law that is held in part keeps its control points, but for the channel's corners
-            if not (np.all(free) or (law.holds_corners and np.any(free))):
-                continue
-            columns = np.array([place[path] for path in own if path in place])
-            self.laws.append(law)
-            self._columns.append(columns)
-            self._free.append(free)
-            self._size.append(float(size[columns[0]]))
-            self._values.append(np.array([float(values[path]) for path in own]) / self._size[-1])
-        taken = np.concatenate(self._columns) if self._columns else np.empty(0, dtype=np.intp)
-        self._others = np.setdiff1d(np.arange(len(paths)), taken)
+            free = [path in place for path in law.paths(match.design)]
+            return any(free) and (law.holds_corners or all(free))
+
+        self.laws = [law for law in resizable_laws(match.design) if may_change(law)]
+        paths = [law.paths(match.design) for law in self.laws]
+        self._free = [np.array([path in place for path in own]) for own in paths]
+        self._columns = [np.array([place[path] for path in own if path in place]) for own in paths]
+        self._size = [float(size[columns[0]]) for columns in self._columns]
+        self._values = [
+            np.array([float(values[path]) for path in own]) / unit for own, unit in zip(paths, self._size, strict=True)
+        ]
+        self._others = np.setdiff1d(np.arange(len(problem.paths)), np.concatenate([[], *self._columns]))
         self._known: dict[tuple[int, Counts], tuple[Reals, Reals, NDArray[np.bool_], Reals]] = {}
         self._lost: dict[tuple[int, Counts, Counts], tuple[Reals, Reals]] = {}
+        self.weighted(roots**2)
 
     @property
     def counts(self) -> tuple[Counts, ...]:
@@ -119,7 +108,6 @@ class LinearModel:
         self.weights = weights
         roots = np.ones(len(self.residuals))
         roots[: self.points] = np.sqrt(weights)
-        self.roots = roots
         columns, rows = self.slopes * roots[:, None], self.residuals * roots
         self._gram = columns.T @ columns + self._penalty.T @ self._penalty
         self._right = columns.T @ rows + self._penalty.T @ self._penalised
