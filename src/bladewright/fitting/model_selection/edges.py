@@ -5,6 +5,8 @@ leave the tip of a wedge short by several radii. A nose slid along the outline i
 """
 
 from collections.abc import Iterator
+from contextlib import suppress
+from functools import partial
 
 import numpy as np
 from scipy.special import chdtri
@@ -35,22 +37,14 @@ EDGES = {
 
 def with_sharp_edges(task: Task, match: Match) -> tuple[Task, Match, str]:
     """The match of a section with the radii of such edges held, its task, and a note of them."""
-    sharp: list[str] = []
+    sharp, again = list[str](), partial(searched, rounds=QUICK_ROUNDS + 1, min_reduction=ROUGH_REDUCTION)
     for name, (radius, ends) in EDGES.items() if task.dimension == 2 else ():
         if radius not in match.problem.paths or not all(_pointed(side, ends) for side in match.state.shape.sides):
             continue
         held = task.without((radius,))
         try:
-            match = searched(
-                task, match.design, noise=match.rms, rounds=QUICK_ROUNDS + 1, min_reduction=ROUGH_REDUCTION
-            )
-            found = searched(
-                held,
-                match.design.changed({radius: SHARP_RADIUS}),
-                noise=match.rms,
-                rounds=QUICK_ROUNDS + 1,
-                min_reduction=ROUGH_REDUCTION,
-            )
+            match = again(task, match.design, noise=match.rms)
+            found = again(held, match.design.changed({radius: SHARP_RADIUS}), noise=match.rms)
             found.design.build()
         except (DesignError, FitError):
             continue
@@ -82,18 +76,13 @@ def from_other_edges(task: Task, match: Match, noise: float) -> Iterator[Match]:
     """
     known, names = match.design.parameters(), {path: path.partition("[")[0] for path in match.problem.paths}
     usual = {**dict.fromkeys(TANGENTS, USUAL_TANGENT), **dict.fromkeys(RADII, USUAL_RADIUS)}
-    starts = [usual]
-    if "stagger" in known:
-        starts.append(usual | dict.fromkeys(ANGLES, known["stagger"]))
-    for values in starts:
+    straight = [usual | dict.fromkeys(ANGLES, known["stagger"])] if "stagger" in known else []
+    for values in (usual, *straight):
         changes = {path: values[name] for path, name in names.items() if name in values}
-        if not changes:
-            continue
-        try:
-            start = with_feasible_edges(match.design.changed(changes))
-            yield searched(task, start, noise=noise, min_reduction=ROUGH_REDUCTION)
-        except (DesignError, FitError):
-            continue
+        with suppress(DesignError, FitError):
+            if changes:
+                start = with_feasible_edges(match.design.changed(changes))
+                yield searched(task, start, noise=noise, min_reduction=ROUGH_REDUCTION)
 
 
 def nearest_from_other_edges(task: Task, match: Match, noise: float) -> Match:
