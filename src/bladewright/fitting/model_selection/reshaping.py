@@ -51,13 +51,25 @@ def _with_each(structure: Structure, laws: Iterable[ResizableLaw], count: Callab
     return replace(structure, counts={**structure.counts, **counts})
 
 
-def richest(design: Design) -> Structure:
-    """The structure with all the control points that a match may begin with."""
+def richest(design: Design, *, sampled: bool = False) -> Structure:
+    """The structure with all the control points that a match may begin with.
 
-    def rich(law: ResizableLaw, place: int, own: int) -> int:
-        return max(own, min(law.rich[place], law.limits()[1][place]))
+    Where it is to be `sampled`, along the chord it has no more of them than the design's samples determine, or as many
+    as the design.
+    """
+    own = structure_of(design)
 
-    return _with_each(structure_of(design), resizable_laws(design), rich)
+    def rich(law: ResizableLaw, place: int, count: int) -> int:
+        most = _determined(own, law, place) if sampled else law.limits()[1][place]
+        return max(count, min(law.rich[place], most))
+
+    return _with_each(own, resizable_laws(design), rich)
+
+
+def _determined(own: Structure, law: ResizableLaw, place: int) -> int:
+    """The most control points of a law that a structure's samples determine, where it is sampled."""
+    sampled = own.samples and law.name in THICKNESSES and place == 0
+    return own.samples - SPARE_SAMPLES if sampled else law.limits()[1][place]
 
 
 ROWS_PER_KNOT = 3
@@ -109,11 +121,9 @@ def with_feasible_edges(design: Design) -> Design:
     for _ in range(MOST_THINNINGS):
         if _has_shape(design):
             break
-        values = design.parameters()
         ends = tuple(f"{name}[{place}]" for name in THICKNESSES for place in (0, len(getattr(design, name)) - 1))
-        design = design.changed(
-            {path: THINNER_EDGES * value for path, value in values.items() if path.startswith(ends)}
-        )
+        thick = {path: value for path, value in design.parameters().items() if path.startswith(ends)}
+        design = design.changed({path: THINNER_EDGES * value for path, value in thick.items()})
     return design
 
 
@@ -157,13 +167,7 @@ def rich_structure(
     more than a design's own samples determine: further ones lie closer to the edges, where the thickness then has to
     bend like a nose (design/matching.md). Laws of which nothing is `free` keep theirs.
     """
-    whole = richest(design)
-    if sampled and whole.samples:
-        own, determined = structure_of(design), whole.samples - SPARE_SAMPLES
-        for name in THICKNESSES:
-            along, across = whole.counts[name]
-            whole = whole.resized(name, (max(own.counts[name][0], min(along, determined)), across))
-    return _towards(whole, design, free, points, rows)
+    return _towards(richest(design, sampled=sampled), design, free, points, rows)
 
 
 def wider_structure(
@@ -180,9 +184,8 @@ def wider_structure(
     least, share = (own, 2) if slim else (richest(design), 3)
 
     def wider(law: ResizableLaw, place: int, count: int) -> int:
-        most = law.limits()[1][place]
-        if own.samples and law.name in THICKNESSES and place == 0 and count < own.samples - SPARE_SAMPLES:
-            most = own.samples - SPARE_SAMPLES
+        determined = _determined(own, law, place)
+        most = determined if count < determined else law.limits()[1][place]
         return max(least.counts[law.name][place], min(count + max(1, count // share), most))
 
     return _towards(_with_each(own, resizable_laws(design), wider), design, free, points, rows)

@@ -3,6 +3,7 @@
 What the points do not determine then is held, and a last search takes more points.
 """
 
+from contextlib import suppress
 from dataclasses import replace
 
 from bladewright.designs import Design
@@ -136,10 +137,8 @@ def _of_structure(several: Task, many: Task, found: Match, structure: Structure,
         if not tried or has_systematic_misfit(found):
             starts.append(search.rich(found, MatchTarget(structured=True)))
         for start in starts:
-            try:
+            with suppress(FitError):
                 tried.append(searched(several, reshaped(start.design, structure), noise=GUESS_NOISE))
-            except FitError:
-                continue
         if not tried:
             return found
         found = min(tried, key=lambda each: each.rms)
