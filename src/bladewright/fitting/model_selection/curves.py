@@ -18,8 +18,7 @@ from bladewright.section.segmented.skin import SEGMENTS
 CHANNEL_CURVES = ("leading_edge", "trailing_edge", "hub", "shroud")
 """the four curves of a channel"""
 FEWEST_ON_WALL = 5
-"""points of a wall at least: its ends, and three beside the blade. With half blades of sections take fewer parameters
-(14 of 20, 35 of 39), as near (design/matching_constants.md)."""
+"""points of a wall at least: its ends, and three beside the blade (design/matching_constants.md)"""
 FINE_PLACES: Reals = np.linspace(0.0, 1.0, 2001)
 """parameters of a curve between which it is taken as linear, within 1e-7 of its length"""
 

@@ -214,13 +214,11 @@ class LinearModel:
 SURPLUS_DIVISOR = 12
 """one in so many of the surplus parameters goes between two predictions (design/matching_constants.md)."""
 CHEAP_LOSS = 3.0
-"""predicted loss for each parameter, of the least, up to which a law loses control points together with it
-(design/matching_constants.md)."""
+"""loss for a parameter, of the least, up to which laws lose control points together (design/matching_constants.md)"""
 WEIGHTED_DEVIATION = 0.8
 """deviation, of the tolerance, from which a point's weight rises (design/matching_constants.md)."""
 WEIGHT_CHANGE, WEIGHT_RANGE = (0.5, 2.0), (0.02, 50.0)
-"""range by which the weight of a point changes at a time, and in all (`WEIGHT_RANGE`)
-(design/matching_constants.md)."""
+"""ranges in which the weight of a point changes at a time, and in all (design/matching_constants.md)"""
 REWEIGHTINGS = 12
 """times that weights change for a prediction at most (design/matching_constants.md)"""
 PREDICTED, LARGEST_PREDICTED = 0.95, 1.5

@@ -25,11 +25,9 @@ from bladewright.section.laws import (
 Counts = tuple[int, ...]
 """numbers of control points of a law along its directions, or of several curves"""
 MOST_CHORD, MOST_SPAN, MOST_CURVE = 24, 12, 12
-"""control points along the chord, along the span and of a meridional curve at most; they bound the time
-(design/matching_constants.md)."""
+"""control points along the chord, along the span and of a meridional curve at most (design/matching_constants.md)"""
 LEAST_SHARE = 0.5
-"""share of a law's smallest control point, where that is positive, below which none falls of the law that is resized.
-Half and twice change nothing measured (design/matching_constants.md)."""
+"""share of a law's smallest control point below which none of the resized law falls (design/matching_constants.md)"""
 COMPARED_PLACES: Reals = np.linspace(0.0, 1.0, 101)
 """parameters at which laws and curves are compared"""
 

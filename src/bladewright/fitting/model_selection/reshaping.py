@@ -54,8 +54,8 @@ def _with_each(structure: Structure, laws: Iterable[ResizableLaw], count: Callab
 def richest(design: Design, *, sampled: bool = False) -> Structure:
     """The structure with all the control points that a match may begin with.
 
-    Where it is to be `sampled`, along the chord it has no more of them than the design's samples determine, or as many
-    as the design.
+    Where it is to be `sampled`, it adds none along the chord that the design's samples do not determine: further ones
+    lie closer to the edges, where the thickness then has to bend like a nose (design/matching.md).
     """
     own = structure_of(design)
 
@@ -107,8 +107,7 @@ def _apart(places: Reals, distance: float) -> int:
 
 
 THINNER_EDGES, MOST_THINNINGS = 0.7, 12
-"""ratio by which the thickness beside the edges is reduced at a time, `MOST_THINNINGS` times at most. Half and twice
-change nothing measured (design/matching_constants.md)."""
+"""ratio by which the thickness beside the edges is reduced, and how often at most (design/matching_constants.md)"""
 
 
 def with_feasible_edges(design: Design) -> Design:
@@ -151,11 +150,9 @@ def _has_shape(design: Design) -> bool:
 
 
 SHARES = (1.0, 0.8, 0.6, 0.4, 0.2, 0.0)
-"""shares of the further control points of a rich structure that are tried where points are few
-(design/matching_constants.md)."""
+"""shares of a rich structure's further control points tried where points are few (design/matching_constants.md)"""
 POINTS_PER_PARAMETER = 2
-"""points for each parameter of a rich structure at least: published profiles have few points. Half and twice change
-nothing measured (design/matching_constants.md)."""
+"""points for each parameter of a rich structure at least, also of published profiles (design/matching_constants.md)"""
 
 
 def rich_structure(
@@ -163,9 +160,7 @@ def rich_structure(
 ) -> Structure:
     """A structure with more control points in every law than a match of so many points is likely to need.
 
-    Along the span it has no more of them than `rows` of points, and where it is to be `sampled`, along the chord no
-    more than a design's own samples determine: further ones lie closer to the edges, where the thickness then has to
-    bend like a nose (design/matching.md). Laws of which nothing is `free` keep theirs.
+    Along the span it has no more of them than `rows` of points. Laws of which nothing is `free` keep theirs.
     """
     return _towards(richest(design, sampled=sampled), design, free, points, rows)
 

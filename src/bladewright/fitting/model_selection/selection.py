@@ -35,22 +35,18 @@ from bladewright.fitting.model_selection.structure_search import (
 GUESS_NOISE = 3e-3
 """noise of the first round where the start is a guess, of the chord (design/matching_constants.md)."""
 FINAL_REDUCTION = 1e-3
-"""predicted relative reduction of the cost that a step of the last search needs: half and twice change nothing measured
-(design/matching_constants.md)."""
+"""predicted relative reduction of the cost that a step of the last search needs (design/matching_constants.md)"""
 QUICK_POINTS, SEVERAL_POINTS, THOROUGH_POINTS = 1000, 4000, 12_000
-"""points of the first search in space, of those that choose control points, and of the last; time grows with them. Half
-and twice change nothing measured (design/matching_constants.md)."""
+"""points of the first search in space, those that choose control points, and the last (design/matching_constants.md)"""
 WEAK_REGULARISATION = 0.1
-"""factor of the regularisation where a match is only improved. Half and twice change nothing measured
-(design/matching_constants.md)."""
+"""factor of the regularisation where a match is only improved (design/matching_constants.md)"""
 CORNERS_HELD_NOTE = "the radii of the channel's corners are read off the points, held, and not counted"
 """note where the channel's corners are read off the points"""
 HELD_NOTE = "the points do not determine {}, which are held where a smooth design has them"
 """note where parameters are held"""
 DETERMINED_MARGIN, MOST_HOLDINGS = 1.5, 3
 """standard deviations that a determined direction of the parameters has in its own scale at least, more than one as the
-search that follows changes the residuals; and how often parameters are held at most (`MOST_HOLDINGS`). Half and twice
-change nothing measured (design/matching_constants.md)."""
+search that follows changes the residuals; and how often parameters are held at most (design/matching_constants.md)."""
 
 
 def selected_match(

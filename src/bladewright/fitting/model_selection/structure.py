@@ -46,13 +46,11 @@ from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNES
 from bladewright.section.unified_sides import sample_places
 
 FEWEST_THICKNESSES = 3
-"""control points of a thickness along the chord at least: half and twice change nothing measured
-(design/matching_constants.md)"""
+"""control points of a thickness along the chord at least (design/matching_constants.md)"""
 SPARE_SAMPLES = 4
-"""samples along the chord beyond a thickness's control points: fewer leave its law undetermined
-(design/matching_constants.md)."""
+"""samples along the chord that determine a thickness, beyond its control points (design/matching_constants.md)"""
 MOST_SAMPLES = 60
-"""samples along the chord at most: half and twice change nothing measured (design/matching_constants.md)"""
+"""samples along the chord at most (design/matching_constants.md)"""
 SPANWISE = (*ANGLES, *TANGENTS, *RADII)
 """laws along the span of the unified family, besides the position of the leading edge and the thicknesses"""
 POSITIONS = ("leading_edge_theta", "leading_edge_y")
@@ -64,20 +62,15 @@ knots include those of one, two and three: cubic laws of 4, 5 and 6 control poin
 RICH_SPAN = {"thickness": 6, "radius": 4, "": 9}
 """control points along the span of its laws, by what their names say: six hold cubic laws of 4, nine of 4, 5 and 6."""
 RICH_CHANNEL = (9, 9, 6, 6)
-"""control points of the edges, of hub and of shroud: six hold cubic curves of 4, nine of 4, 5 and 6. Half and twice
-move the radial diffuser from 3.9e-4 to 3.1e-4 of the chord, and from 25 parameters to 45
-(design/matching_constants.md)."""
+"""control points of the edges, of hub and of shroud, which hold cubic curves likewise (design/matching_constants.md)"""
 RICH_SECTION = {2: 12, 3: 8}
 """control points along the chord of a rich structure of sections of other families, by dimension"""
 RICH_SECTION_SPAN = 5
-"""control points along the span of their laws. Half and twice change nothing measured
-(design/matching_constants.md)."""
+"""control points along the span of their laws (design/matching_constants.md)"""
 RICH_CURVE = 8
-"""points on an edge curve or a wall of a rich structure: as many as on a channel's edges. Half and twice change nothing
-measured (design/matching_constants.md)."""
+"""points on an edge curve or a wall of a rich structure (design/matching_constants.md)"""
 RICH_SEGMENT = 5
-"""inner control points of a segment in a rich structure, of a section that stands alone: they hold segments of one.
-With twice the morphing airfoil takes 35 parameters, not 39, as near (design/matching_constants.md)."""
+"""inner control points of a segment in a rich structure: they hold segments of one (design/matching_constants.md)"""
 
 
 @singledispatch

@@ -47,19 +47,16 @@ from bladewright.fitting.model_selection.structure import reshaped
 from bladewright.nurbs.basis import Reals
 
 REFUSED_MARGIN = 6.0
-"""factor of the margin of edge radii where a rich match that searches allow is refused when built. Half and twice
-change nothing measured (design/matching_constants.md)."""
+"""factor of the margin of edge radii where a match is refused when built (design/matching_constants.md)"""
 NOISE_REASON = "what is left is the cloud's own noise, {:.2g} mm: more control points would follow it"
 TRIED_PARAMETERS, MOST_TRIED = 100, 4
 """parameters of the structures of one size that are searched, in all, as predictions are linear; and structures at most
 (`MOST_TRIED`), so that one can be built. With one of 22 the ORC nozzle is met by 1.68e-3 of the chord, not 1.50e-3;
 with half of either LS89 is met by 1.0e-3, not 8.1e-4 (design/matching_constants.md)."""
 STAGES = 3
-"""times that structures are predicted anew about the match that they have led to: half and twice change nothing
-measured (design/matching_constants.md)."""
+"""times that structures are predicted anew about the match that they led to (design/matching_constants.md)"""
 NEAR_RICH = 1.25
-"""largest distance that a match keeps whose misfit is no noise and of which nothing is asked, of that of a rich one:
-half and twice change nothing measured (design/matching_constants.md)."""
+"""largest distance, of a rich match's, of one of which nothing is asked (design/matching_constants.md)"""
 NOISE_QUANTILE = 1.645
 """standard errors by which a misfit may pass the noise, which one of pure noise does once in twenty times
 (design/matching_constants.md)."""
@@ -74,8 +71,7 @@ exact, and else. Exact clouds are held to theirs at their points, as between the
 large (design/matching.md)."""
 WORTHWHILE, MOST_PREDICTIONS = 0.9, 8
 """share of the parameters of a match that a structure may have with which a search for fewer goes on; and matches about
-which structures are predicted for one aim at most (`MOST_PREDICTIONS`): half and twice change nothing measured
-(design/matching_constants.md)."""
+which structures are predicted for one aim at most (design/matching_constants.md)"""
 SETTLED_RICH = 0.9
 """ratio of the misfits of two rounds above which the search of a rich structure has settled, and of two rich structures
 above which neither is near everywhere (design/matching.md)"""
@@ -327,7 +323,7 @@ REWEIGHTED_SEARCHES = 6
 """searches of one structure with other weights at most (design/matching_constants.md)"""
 TOUCHED = 0.05
 """excess over the tolerance, of it, that the last of these is foreseen to have where they go on: each reduces it by the
-same ratio as the one before. Half and twice change nothing measured (design/matching_constants.md)."""
+same ratio as the one before (design/matching_constants.md)."""
 
 
 def nearest_to_tolerance(task: Task, start: Match, weights: Reals, rich: Match, tolerance: float) -> Match:
