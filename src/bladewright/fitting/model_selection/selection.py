@@ -77,19 +77,14 @@ def selected_match(
         # no richer one has a shape, or none is needed: the first match, of few points, stands
         rich = evaluated(several, rich.design, noise=rich.rms)
     rich = without_false_outliers(several, rich)
-    if target.parameters is not None:
-        sized = search.of_size(rich, target.parameters)
-        found = sized if len(sized.problem.paths) <= target.parameters else found
-    elif target.tolerance is not None:
-        found, reason = search.within(rich, target.tolerance)
-    else:
-        found = search.near_everywhere(rich)
     if target.tolerance is not None:
+        found, reason = search.within(rich, target.tolerance)
         confirmed = len(many.points) == len(several.points)
         return (found if confirmed else confirmed_match(many, found, target.tolerance)), reason
-    if not target.open:
-        return _searched_further(many, found), reason
-    last, note = determined(many, found)
+    if target.parameters is not None:
+        sized = search.of_size(rich, target.parameters)
+        return _searched_further(many, sized if len(sized.problem.paths) <= target.parameters else found), reason
+    last, note = determined(many, search.near_everywhere(rich))
     limit = trusted_distance(last)
     lost = has_systematic_misfit(last) and last.maximum > limit
     if lost and evaluated(many, rich.design, noise=rich.rms).maximum <= limit:
