@@ -62,7 +62,7 @@ def selected_match(
     found = searched(few, first, noise=noise, min_reduction=ROUGH_REDUCTION)
     found = nearest_from_other_edges(few, found, GUESS_NOISE) if guessed else found
     if target.structured and target.tolerance is None:
-        return _of_structure(several, many, found, like or structure_of(first), guessed=guessed), ""
+        return _of_structure(several, many, found, like if guessed else None), ""
     held = target.parameters is not None and bool(corner_radii(first)) and found.ends.in_rows(found.model.chord)
     reason = CORNERS_HELD_NOTE if held else ""
     several, many = map(_with_corners_held, (several, many)) if held else (several, many)
@@ -119,12 +119,11 @@ def determined(task: Task, match: Match) -> tuple[Match, str]:
     return match, "; ".join(filter(None, (note, HELD_NOTE.format(", ".join(held)) if held else "")))
 
 
-def _of_structure(several: Task, many: Task, found: Match, structure: Structure, *, guessed: bool) -> Match:
-    """The match of a given structure: from a richer one where it is not found else."""
-    if guessed:
+def _of_structure(several: Task, many: Task, found: Match, structure: Structure | None) -> Match:
+    """The match of a given structure, from a richer one where it is not found else; of a match's own one by None."""
+    if structure is not None:
         search = StructureSearch(task=several, samples=structure.samples, first=found.design)
-        tried = [found] if structure_of(found.design) == structure else []
-        starts = [found] if not tried else []
+        tried, starts = ([found], []) if structure_of(found.design) == structure else ([], [found])
         if not tried or has_systematic_misfit(found):
             starts.append(search.rich(found, MatchTarget(structured=True)))
         for start in starts:
