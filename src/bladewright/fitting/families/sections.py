@@ -84,8 +84,14 @@ def matched_section(
     structure = None if like is None else structure_of(like)
     off = misfits(tried[:CONSIDERED])
     promising = [each.design for each, miss in zip(tried, off, strict=False) if miss < PROMISING * off[0]]
-    found, reason = nearest(task, promising, target, structure)
-    if kind.has_contours and like is None and is_far(found, target):
+    contours = kind.has_contours and like is None
+    try:
+        found, reason = nearest(task, promising, target, structure)
+    except FitError:
+        if not contours:
+            raise
+        found, reason = tried[0], ""
+    if contours and is_far(found, target):
         outline, note = _through_points(task, kind, tried, header, target, found)
         if outline is not None and criterion(outline, target) < criterion(found, target):
             found, reason = outline, note
@@ -107,12 +113,17 @@ def nearest(task: Task, designs: Sequence[Design], target: MatchTarget, like: An
             found.append(fresh)
             if fresh[0].maximum < NEAR * fresh[0].model.chord:
                 break
+        else:
+            refusal = FitError(
+                "a design of the family was found near the points that cannot be built: try another family, or give a "
+                "start"
+            )
     if not found:
         raise FitError(str(refusal)) from refusal
     return min(found, key=lambda each: criterion(each[0], target))
 
 
-def criterion(match: Match, target: MatchTarget) -> tuple[bool, bool, float]:
+def criterion(match: Match, target: MatchTarget) -> tuple[int, float]:
     """What the best of several matches has least of: parameters where a tolerance is kept, else Schwarz's criterion.
 
     A match that has no misfit beyond the noise anywhere comes before one that has, as few points show an edge, and of
@@ -121,12 +132,12 @@ def criterion(match: Match, target: MatchTarget) -> tuple[bool, bool, float]:
     """
     count, points = len(match.problem.paths), np.count_nonzero(match.rows)
     if target.tolerance is not None and match.maximum <= target.tolerance:
-        return False, False, float(count) - 1.0 / EXACT**2
+        return 0, float(count)
     if target.parameters is not None and count > target.parameters:
-        return True, True, np.inf
+        return 4, np.inf
     misfit = _has_misfit(match)
     schwarz = float(points * np.log(max(match.rms, EXACT) ** 2) + count * np.log(points))
-    return misfit and match.maximum > trusted_distance(match), misfit, schwarz
+    return 1 + misfit + (misfit and match.maximum > trusted_distance(match)), schwarz
 
 
 def _worst_neighbourhood(match: Match) -> float:
