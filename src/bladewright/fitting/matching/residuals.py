@@ -6,25 +6,25 @@ are exact.
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from itertools import chain
+from itertools import chain, groupby
 
 import numpy as np
 
 from bladewright.blade.design.unified import UnifiedBlade
-from bladewright.designs import Design, Part
+from bladewright.designs import Design, Law
 from bladewright.errors import DesignError
 from bladewright.fitting.free_parameters import EDGES
 from bladewright.fitting.matching.blade_ends import BladeEnds, EdgeOverhang, WallPoints
 from bladewright.fitting.matching.footpoints import Footpoints, concatenated, nearest_footpoints
 from bladewright.fitting.matching.scales import Scales
-from bladewright.fitting.model_selection.structure import SPANWISE, lines_of
 from bladewright.fitting.models.model import Model, ModelShape
 from bladewright.numerics.least_squares import ConstrainedProblem
 from bladewright.nurbs.basis import Reals
-from bladewright.section.laws import number_paths
+from bladewright.section.laws import named_laws, number_paths
+from bladewright.section.unified import UnifiedSection
 from bladewright.section.unified_limits import TANGENTS, THICKNESSES
 
 SPREAD_ABOUT_START = 3.0
@@ -105,14 +105,14 @@ def regularisation_of(
 
 
 def _second_differences(start: Design) -> Iterator[Row]:
-    """Second differences of laws along the span and along the chord."""
-    for name in (*SPANWISE, *THICKNESSES, "leading_edge_theta", "leading_edge_y"):
-        grid = _paths_of(start, name)
-        columns = zip(*grid, strict=True) if len({len(line) for line in grid}) == 1 else ()
-        for line in (*grid, *columns):
-            yield from _second_differences_of(line)
-    if isinstance(getattr(start, "section", None), Part):
-        for line in lines_of(start.section, "section"):  # type: ignore[attr-defined]
+    """Second differences of laws along the span, and of rows of laws or numbers along the chord."""
+    laws: Iterable[tuple[str, Law]] = named_laws(start)
+    if isinstance(start, UnifiedSection):
+        laws = ((f"{name}[{i}]", value) for name in THICKNESSES for i, value in enumerate(getattr(start, name)))
+    for _, row in groupby(laws, key=lambda each: each[0].partition("[")[0]):
+        lines = [number_paths(law, path) for path, law in row]
+        columns = zip(*lines, strict=True) if len({len(line) for line in lines}) == 1 else ()
+        for line in (*lines, *columns):
             yield from _second_differences_of(line)
 
 
@@ -137,9 +137,9 @@ def _meridional_bends(start: Design) -> Iterator[Row]:
 
 
 def _thickness_differences(start: Design) -> Iterator[Row]:
-    above, below = (_paths_of(start, name) for name in THICKNESSES)
-    if [len(row) for row in above] == [len(row) for row in below]:
-        for pair in zip(chain(*above), chain(*below), strict=True):
+    above, below = ([path for path in start.parameters() if path.startswith(name)] for name in THICKNESSES)
+    if len(above) == len(below):
+        for pair in zip(above, below, strict=True):
             yield list(zip(pair, (1.0, -1.0), strict=True)), 0.0, CAMBER_SPREAD
 
 
@@ -148,14 +148,6 @@ def _tangents(start: Design, spread: float) -> Iterator[Row]:
         for path in start.parameters():
             if path.startswith(TANGENTS):
                 yield [(path, 1.0)], USUAL_TANGENT, spread
-
-
-def _paths_of(start: Design, name: str) -> list[list[str]]:
-    """Paths of a law's control points along the span, a list for each control point along the chord."""
-    law = getattr(start, name, None)
-    if name in THICKNESSES:
-        return [number_paths(entry, f"{name}[{i}]") for i, entry in enumerate(law or ())]
-    return [] if law is None else [number_paths(law, name)]
 
 
 EDGE_SHARE = 0.05

@@ -1,9 +1,9 @@
 """How many control points the laws and curves of a design have, apart from their values."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import singledispatch
-from itertools import groupby, pairwise
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,7 @@ import numpy as np
 from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.blade.design.unified import UnifiedBlade
-from bladewright.designs import Design, Part, Stations
+from bladewright.designs import Design, Stations
 from bladewright.errors import FitError
 from bladewright.fitting.free_parameters import EDGES, WALLS, sliding_coordinate
 from bladewright.fitting.model_selection.curves import (
@@ -37,12 +37,12 @@ from bladewright.numerics.elementary import cumulative_length
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber_angle import CamberAngle
 from bladewright.section.curvature_meanline import CurvatureMeanline
-from bladewright.section.laws import named_laws, number_paths
+from bladewright.section.laws import named_laws
 from bladewright.section.segmented.part import SegmentedSection
 from bladewright.section.segmented.skin import SEGMENTS
 from bladewright.section.suction_pressure.part import SuctionPressure
 from bladewright.section.unified import UnifiedSection
-from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNESSES, WEIGHTS
+from bladewright.section.unified_limits import THICKNESSES, WEIGHTS
 from bladewright.section.unified_sides import sample_places
 
 FEWEST_THICKNESSES = 3
@@ -51,8 +51,6 @@ SPARE_SAMPLES = 4
 """samples along the chord that determine a thickness, beyond its control points (design/matching_constants.md)"""
 MOST_SAMPLES = 60
 """samples along the chord at most (design/matching_constants.md)"""
-SPANWISE = (*ANGLES, *TANGENTS, *RADII)
-"""laws along the span of the unified family, besides the position of the leading edge and the thicknesses"""
 POSITIONS = ("leading_edge_theta", "leading_edge_y")
 """fields of the position of the leading edge"""
 RICH_CHORDWISE = {2: 24, 3: 9}
@@ -190,15 +188,6 @@ def sized_laws(design: Any) -> list[ResizableLaw]:
 def _rich_span(stem: str, name: str) -> int:
     """Control points along the span of a law of a rich structure."""
     return RICH_SECTION_SPAN if stem else next(most for word, most in RICH_SPAN.items() if word in name)
-
-
-def lines_of(part: Part, stem: str) -> Iterator[list[str]]:
-    """Paths of control points in a row, for every law along the span of the part at a path and every row of laws."""
-    for _, row in groupby(named_laws(part), key=lambda each: each[0].partition("[")[0]):
-        lines = [number_paths(law, f"{stem}.{path}") for path, law in row]
-        yield from lines
-        if len({len(line) for line in lines}) == 1:
-            yield from (list(column) for column in zip(*lines, strict=True))
 
 
 @dataclass(frozen=True, kw_only=True)
