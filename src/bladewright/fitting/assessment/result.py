@@ -75,7 +75,7 @@ class Fit(FrozenRecord, Shown):
     shown_as: ClassVar[str] = "fit"
 
     design: Design
-    """a `UnifiedBlade`, or a `UnifiedSection` for a cloud in the plane"""
+    """a blade of the family, or a section for a cloud in the plane"""
     built: Any
     """what the design builds: a `Blade` or a `Section`"""
     cloud: Reals

@@ -88,7 +88,7 @@ class Model(ABC):
 @singledispatch
 def model_of(design: Design, tolerance: float | None = None) -> Model:  # noqa: ARG001 - the contract's
     """The model of a kind of design, with the knots that the design needs for a tolerance, of the chord."""
-    raise FitError(f"a {type(design).__name__} cannot be fitted: give a design of the unified family")
+    raise FitError(f"a {type(design).__name__} cannot be fitted: give a section or a blade of a family")
 
 
 def moved_along(sides: Sequence[Side], rates: Sequence[Array], footpoints: Footpoints, directions: Reals) -> Reals:
