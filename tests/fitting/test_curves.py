@@ -149,7 +149,7 @@ def test_the_gradient_is_that_of_central_differences(weighted, closed, power):
     rng = np.random.default_rng(1)
     angle = np.arange(6) / 6 * 2 * np.pi
     net = Net(
-        knots=(np.linspace(0.0, 1.0, 7) if closed else uniform_knots(6, 3),),
+        knots=(uniform_knots(9 if closed else 6, 3),),
         degrees=(3,),
         points=np.stack([np.cos(angle), np.sin(angle), 0.3 * rng.normal(size=6)], axis=-1),
         log_weights=0.2 * rng.normal(size=6) if weighted else np.zeros(6),

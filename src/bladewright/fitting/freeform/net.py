@@ -45,7 +45,7 @@ class Net(Shape):
     """Control points and weights of a curve or surface, some of them unknown."""
 
     knots: tuple[Reals, ...]
-    """clamped, one for each direction; of a closed curve the distinct knots of a period"""
+    """clamped, one for each direction; the inner ones of a closed curve are distinct"""
     degrees: tuple[int, ...]
     points: Reals
     """(N, d) control points, the last direction fastest; of a closed curve each once"""
@@ -62,27 +62,18 @@ class Net(Shape):
     @property
     def counts(self) -> tuple[int, ...]:
         """Numbers of control points along each direction."""
-        if self.closed:
-            return (len(self.knots[0]) - 1,)
-        return tuple(len(knots) - degree - 1 for knots, degree in zip(self.knots, self.degrees, strict=True))
-
-    @cached_property
-    def clamped(self) -> tuple[Reals, ...]:
-        """The clamped knots of the shape."""
-        if not self.closed:
-            return self.knots
-        period, degree = self.knots[0], self.degrees[0]
-        return (np.concatenate([np.full(degree, period[0]), period, np.full(degree, period[-1])]),)
+        more = self.degrees[0] if self.closed else 0
+        return tuple(len(knots) - degree - 1 - more for knots, degree in zip(self.knots, self.degrees, strict=True))
 
     @cached_property
     def spread(self) -> Reals:
         """(m, N) matrix from the control points to those of the clamped shape, which a closed curve has more of."""
         if not self.closed:
             return np.eye(len(self.points))
-        period, degree, (count,) = self.knots[0], self.degrees[0], self.counts
+        period, degree, (count,) = breaks(self.knots[0]), self.degrees[0], self.counts
         turn, place = np.divmod(np.arange(-degree, count + degree + 1), count)
         around = period[place] + turn * (period[-1] - period[0])
-        change = knot_change(around, degree, self.clamped[0])
+        change = knot_change(around, degree, self.knots[0])
         return np.asarray(change @ np.eye(count)[np.arange(count + degree) % count])
 
     @cached_property
@@ -116,7 +107,7 @@ class Net(Shape):
         The bending is the integral of all squared second derivatives by the parameters, and a part of the first: a
         thin plate under tension (Duchon 1977, Franke 1985).
         """
-        of = [_products(knots, degree) for knots, degree in zip(self.clamped, self.degrees, strict=True)]
+        of = [_products(knots, degree) for knots, degree in zip(self.knots, self.degrees, strict=True)]
         energy, *across = (bend + TENSION * slope for _, slope, bend in of)
         for other in across:
             (mass_u, slope_u, _), (mass_v, slope_v, _) = of
@@ -147,7 +138,7 @@ class Net(Shape):
         points = (self.spread @ (own[:, None] * self.points)) / weights[:, None]
         given = weights.reshape(self.counts if len(self.knots) == 2 else -1) if self.log_weights.any() else None
         if len(self.knots) == 1:
-            return Curve(control_points=points, knots=self.clamped[0], degree=self.degrees[0], weights=given)
+            return Curve(control_points=points, knots=self.knots[0], degree=self.degrees[0], weights=given)
         return Surface(
             control_points=points.reshape(*self.counts, -1),
             weights=given,
@@ -166,7 +157,7 @@ class Net(Shape):
     @property
     def domain(self) -> Reals:
         """(2, k) lowest and highest parameters."""
-        return np.array([[knots[0] for knots in self.clamped], [knots[-1] for knots in self.clamped]])
+        return np.array([[knots[0] for knots in self.knots], [knots[-1] for knots in self.knots]])
 
     def nearest(self, points: Reals, near: Reals | None = None) -> Reals:
         """Parameters (m, k) of the nearest places of points (m, d); a closed curve has no ends to be held at."""
@@ -229,24 +220,22 @@ class Net(Shape):
 
     def refined(self, knots: Sequence[float], direction: int = 0) -> Net:
         """The same shape with further knots."""
-        every = list(self.knots)
-        every[direction] = np.sort(np.concatenate([every[direction], knots]))
         along, shape = DIRECTIONS[direction], self.shape
         finer = inserted(shape, knots) if isinstance(shape, Curve) else inserted(shape, knots, along)
-        net = net_of(finer, closed=self.closed, knots=tuple(every))
+        net = net_of(finer, closed=self.closed)
         return replace(net, boundary=self.boundary, weighted=self.weighted, ends=self.ends)
 
 
-def net_of(shape: Curve | Surface, *, closed: bool = False, knots: tuple[Reals, ...] = ()) -> Net:
+def net_of(shape: Curve | Surface, *, closed: bool = False) -> Net:
     """A curve or surface as a net; of a closed curve the nearest on its distinct knots."""
     if isinstance(shape, Curve):
         degrees: tuple[int, ...] = (shape.degree,)
-        own: tuple[Reals, ...] = (breaks(shape.knots) if closed else shape.knots,)
+        knots: tuple[Reals, ...] = (np.pad(breaks(shape.knots), shape.degree, "edge") if closed else shape.knots,)
     else:
-        degrees, own = (shape.degree_u, shape.degree_v), (shape.knots_u, shape.knots_v)
+        degrees, knots = (shape.degree_u, shape.degree_v), (shape.knots_u, shape.knots_v)
     points = shape.control_points.reshape(-1, shape.control_points.shape[-1])
     weights = np.ones(len(points)) if shape.weights is None else shape.weights.ravel()
-    net = Net(knots=knots or own, degrees=degrees, points=points, log_weights=np.log(weights), closed=closed)
+    net = Net(knots=knots, degrees=degrees, points=points, log_weights=np.log(weights), closed=closed)
     if closed:
         both = np.linalg.lstsq(net.spread, np.column_stack([weights[:, None] * points, weights]), rcond=None)[0]
         logs = np.zeros(len(both)) if shape.weights is None else np.log(both[:, -1])
@@ -276,9 +265,10 @@ def empty_net(
         what = "curve" if len(degrees) == 1 else "surface"
         raise FitError(f"a {what} of degree {degrees} with {counts} control points: {error}") from error
     if closed:
-        own = [np.linspace(0.0, 1.0, counts[0] + 1) if knots is None else np.array(knots[0], dtype=np.float64)]
-        if not (np.diff(own[0]) > 0.0).all():
-            raise FitError(f"the knots {own[0].tolist()} of a closed curve must be distinct and increasing; sort them")
+        period = np.linspace(0.0, 1.0, counts[0] + 1) if knots is None else np.array(knots[0], dtype=np.float64)
+        if not (np.diff(period) > 0.0).all():
+            raise FitError(f"the knots {period.tolist()} of a closed curve must be distinct and increasing; sort them")
+        own = [np.pad(period, degrees[0], "edge")]
     logs = np.zeros(counts)
     if not isinstance(weights, str):
         given = np.array(weights, dtype=np.float64)
