@@ -98,7 +98,7 @@ def fit_curve(
             first, last = scaled[list(outermost)] if pair is None else pair
             net = replace(net, boundary="corners", points=np.stack([first, *net.points[1:-1], last]))
     match, notes = matched_within(net, scaled, request, warm=start is not None)
-    curve = match.shape.curve
+    curve = match.shape.shape
     curve = replace(curve, control_points=request.restored(curve.control_points))
     return CurveFit(curve=curve, u=match.parameters[:, 0], **match.figures(request, *notes))
 
@@ -222,19 +222,15 @@ def fit_surface(
         first, last = np.min(parameters, axis=0), np.max(parameters, axis=0)
         surface = _over(surface, first, last)
         parameters = np.clip(low + (parameters - first) / (last - first) * (high - low), low, high)
-    assert isinstance(surface, Surface)  # noqa: S101 - two directions
     surface = replace(surface, control_points=request.restored(surface.control_points))
     u, v = parameters.T
     return SurfaceFit(surface=surface, u=u, v=v, **match.figures(request, *notes))
 
 
-def _over(surface: Curve | Surface, first: Reals, last: Reals) -> Surface:
+def _over(surface: Surface, first: Reals, last: Reals) -> Surface:
     """The surface from its first to its last parameters (2,), where it is cut or continued; its domain stays."""
-    assert isinstance(surface, Surface)  # noqa: S101 - two directions
-    domains = surface.domain_u, surface.domain_v
-    for k, direction in enumerate(DIRECTIONS):
-        surface = extended(surface, float(first[k]), float(last[k]), direction)
-        surface = reparametrised(surface, *domains[k], direction)
+    for k, (direction, domain) in enumerate(zip(DIRECTIONS, (surface.domain_u, surface.domain_v), strict=True)):
+        surface = reparametrised(extended(surface, float(first[k]), float(last[k]), direction), *domain, direction)
     return surface
 
 
@@ -245,7 +241,7 @@ def _rectangle(points: Reals) -> Reals:
     """
     away = points - points.mean(axis=0)
     axes = np.linalg.svd(away, full_matrices=False)[2]
-    if np.linalg.matrix_rank(away) < len(DIRECTIONS):
+    if np.linalg.matrix_rank(away) < 2:
         raise FitError(f"the {len(points)} points lie on a line: a surface needs points beside it")
     plane = points @ axes[:2].T
     hull = plane[ConvexHull(plane).vertices]

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -37,7 +37,7 @@ NOISE_RATIO = 1.25
 """root mean square of a knot span's distances, of the noise, up to which they are noise: three standard errors of the
 root mean square of 70 distances (design/freeform.md)"""
 DIRECTIONS: tuple[Direction, Direction] = ("u", "v")
-"""names of the directions of a surface"""
+"""of a surface; a curve has the first"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -131,8 +131,8 @@ class Net(Shape):
         return replace(self, points=points, log_weights=logs)
 
     @cached_property
-    def shape(self) -> Curve | Surface:
-        """The curve or surface."""
+    def shape(self) -> Any:
+        """The `Curve` or `Surface`."""
         own = np.exp(self.log_weights)
         weights = self.spread @ own
         points = (self.spread @ (own[:, None] * self.points)) / weights[:, None]
@@ -147,12 +147,6 @@ class Net(Shape):
             degree_u=self.degrees[0],
             degree_v=self.degrees[1],
         )
-
-    @property
-    def curve(self) -> Curve:
-        """The shape of one direction."""
-        assert isinstance(self.shape, Curve)  # noqa: S101 - of a surface nobody asks it
-        return self.shape
 
     @property
     def domain(self) -> Reals:
@@ -218,11 +212,9 @@ class Net(Shape):
         sides = np.concatenate([points, np.zeros((len(root), points.shape[1]))])
         return replace(self, points=np.linalg.lstsq(rows, sides, rcond=None)[0])
 
-    def refined(self, knots: Sequence[float], direction: int = 0) -> Net:
+    def refined(self, knots: Sequence[float], direction: Direction) -> Net:
         """The same shape with further knots."""
-        along, shape = DIRECTIONS[direction], self.shape
-        finer = inserted(shape, knots) if isinstance(shape, Curve) else inserted(shape, knots, along)
-        net = net_of(finer, closed=self.closed)
+        net = net_of(inserted(self.shape, knots, direction), closed=self.closed)
         return replace(net, boundary=self.boundary, weighted=self.weighted, ends=self.ends)
 
 
@@ -323,8 +315,8 @@ def _finer(match: ShapeMatch[Net], limit: float) -> tuple[Net | None, str]:
     found: list[tuple[float, Net]] = []
     reason = ""
     square = match.distances**2
-    for direction, own in enumerate(match.shape.knots):
-        at, knots = match.parameters[:, direction], []
+    for direction, own, at in zip(DIRECTIONS, match.shape.knots, match.parameters.T, strict=False):
+        knots = []
         for low, high in pairwise(breaks(own)):
             rows = match.inliers & (at >= low) & (at <= high)
             above = square[rows].sum() > rows.sum() * match.codimension * (NOISE_RATIO * match.noise) ** 2

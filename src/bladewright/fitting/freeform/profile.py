@@ -107,25 +107,25 @@ class CamberThickness(Shape):
 
     @cached_property
     def _abscissae(self) -> Reals:
-        return np.maximum.accumulate(np.real(self.camber.curve(SITES)[:, 0]))
+        return np.maximum.accumulate(np.real(self.camber.shape(SITES)[:, 0]))
 
     def _sites(self, u: Array) -> Reals:
         """Camber parameters (n,) at parameters u (n,) of the thickness, where the abscissae are the same."""
-        abscissae = np.real(self.thickness.curve(np.abs(np.real(u)))[:, 0])
+        abscissae = np.real(self.thickness.shape(np.abs(np.real(u)))[:, 0])
         found = np.interp(abscissae, self._abscissae, SITES)
         # from 1e-5, squared twice, and once more in each evaluation
         for _ in range(2):
-            place, slope = (np.real(each[:, 0]) for each in self.camber.curve.derivatives(found, 1))
+            place, slope = (np.real(each[:, 0]) for each in self.camber.shape.derivatives(found, 1))
             found = np.clip(found - (place - abscissae) / np.maximum(slope, 1e-9), 0.0, 1.0)
         return found
 
     def __call__(self, u: Array, near: Reals | None = None) -> Array:
         """Points (n, 2) at parameters u (n,), which may be complex; camber parameters `near` (n,) are then at hand."""
         sign = np.where(np.real(u) < 0.0, -1.0, 1.0)
-        x, h = self.thickness.curve(sign * u).T
+        x, h = self.thickness.shape(sign * u).T
         near = self._sites(u) if near is None else near
-        first, slope = self.camber.curve.derivatives(near, 1)
-        place, tangent = self.camber.curve.derivatives(near + (x - first[:, 0]) / slope[:, 0], 1)
+        first, slope = self.camber.shape.derivatives(near, 1)
+        place, tangent = self.camber.shape.derivatives(near + (x - first[:, 0]) / slope[:, 0], 1)
         return np.asarray(place + (sign * h / length(tangent))[:, None] * turned_left(tangent))
 
 
@@ -208,8 +208,8 @@ def fit_profile(
         of, u = match.shape, match.parameters[:, 0]
         heights = of.thickness.points * request.extent + np.array([request.centre[0], 0.0])
         return ProfileFit(
-            camber=replace(of.camber.curve, control_points=request.restored(of.camber.points)),
-            thickness=replace(of.thickness.curve, control_points=heights),
+            camber=replace(of.camber.shape, control_points=request.restored(of.camber.points)),
+            thickness=replace(of.thickness.shape, control_points=heights),
             upper=u >= 0.0,
             t=np.abs(u),
             **match.figures(request),
