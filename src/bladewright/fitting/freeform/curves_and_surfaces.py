@@ -92,14 +92,13 @@ def fit_curve(
         shares = net.nearest(scaled)[:, 0]
     if not closed:
         outermost = int(np.argmin(shares)), int(np.argmax(shares))
-        if isinstance(ends, str) and ends == "free":
+        if pair is None and ends == "free":
             net = replace(net, ends=outermost)
         else:
             first, last = scaled[list(outermost)] if pair is None else pair
             net = replace(net, boundary="corners", points=np.stack([first, *net.points[1:-1], last]))
     match, notes = matched_within(net, scaled, request, warm=start is not None)
-    curve = match.shape.shape
-    curve = replace(curve, control_points=request.restored(curve.control_points))
+    curve = request.restored(match.shape.shape)
     return CurveFit(curve=curve, u=match.parameters[:, 0], **match.figures(request, *notes))
 
 
@@ -222,9 +221,8 @@ def fit_surface(
         first, last = np.min(parameters, axis=0), np.max(parameters, axis=0)
         surface = _over(surface, first, last)
         parameters = np.clip(low + (parameters - first) / (last - first) * (high - low), low, high)
-    surface = replace(surface, control_points=request.restored(surface.control_points))
     u, v = parameters.T
-    return SurfaceFit(surface=surface, u=u, v=v, **match.figures(request, *notes))
+    return SurfaceFit(surface=request.restored(surface), u=u, v=v, **match.figures(request, *notes))
 
 
 def _over(surface: Surface, first: Reals, last: Reals) -> Surface:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY, dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -152,9 +152,9 @@ class Request:
         """Points (..., d) in extents about the centre."""
         return np.asarray((points - self.centre) / self.extent)
 
-    def restored(self, points: Reals) -> Reals:
-        """Points (..., d) in their own unit."""
-        return points * self.extent + self.centre
+    def restored(self, shape: Any) -> Any:
+        """A curve or surface in the unit of the points."""
+        return replace(shape, control_points=shape.control_points * self.extent + self.centre)
 
     def ends(self, ends: Any) -> Reals | None:
         """Two ends (2, d) that are given, in extents about the centre; None for a word."""

@@ -189,7 +189,6 @@ def fit_profile(
     pair, scaled = request.ends(ends), request.scaled(request.points)
     if trailing_edge not in ("blunt", "round"):
         raise FitError(f"trailing edge {trailing_edge!r} is unknown: `blunt` or `round`")
-    free = isinstance(ends, str) and ends == "free"
 
     def fitted(camber: int, thickness: int) -> ProfileFit:
         start = _start(scaled, camber, thickness, round_end=trailing_edge == "round")
@@ -201,14 +200,14 @@ def fit_profile(
         upper = match.parameters[:, 0] >= 0.0
         counts = np.where(upper, np.sum(upper), np.sum(~upper))
         match = matched_by_stages(replace(match, weights=0.5 * len(scaled) / counts), request)
-        if free:
+        if pair is None and ends == "free":
             # last, because a blunt edge that stands out of its points costs nothing (design/freeform.md)
             loose = replace(match.shape, camber=replace(match.shape.camber, boundary="free"))
             match = matched_by_stages(replace(match, shape=loose), request, warm=True)
         of, u = match.shape, match.parameters[:, 0]
         heights = of.thickness.points * request.extent + np.array([request.centre[0], 0.0])
         return ProfileFit(
-            camber=replace(of.camber.shape, control_points=request.restored(of.camber.points)),
+            camber=request.restored(of.camber.shape),
             thickness=replace(of.thickness.shape, control_points=heights),
             upper=u >= 0.0,
             t=np.abs(u),
