@@ -158,7 +158,7 @@ def test_the_gradient_is_that_of_central_differences(weighted, closed, power):
         closed=closed,
     )
     points = net.shape(rng.random(40)) + 0.02 * rng.normal(size=(40, 3))
-    match = replace(placed(net, points, rng.random(40)), power=power, scale=0.05)
+    match = replace(placed(net, points), weights=rng.random(40), power=power, scale=0.05)
     problem = Problem(match, stiffness=1e-3)
     residuals, slopes = problem.values(problem.start)[0], problem.derivatives(problem.start)[0]
     step = 1e-6

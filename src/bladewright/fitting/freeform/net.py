@@ -79,7 +79,7 @@ class Net(Shape):
     @cached_property
     def free(self) -> NDArray[np.bool_]:
         """(N,) which control points move."""
-        if self.boundary == "free" or self.closed:
+        if self.boundary == "free":
             return np.ones(len(self.points), dtype=bool)
         places = zip(np.indices(self.counts), self.counts, strict=True)
         outer = np.stack([np.isin(place, (0, count - 1)).ravel() for place, count in places])
@@ -167,8 +167,8 @@ class Net(Shape):
             seam = np.flatnonzero((found.u <= low) | (found.u >= high))
             past = search.nearest(points[seam], places(low + high - parameters[seam]), converged=LAST_STEP)
             parameters[seam, 0] = np.where(past.square < found.square[seam], past.u, found.u[seam])
-        for point, end in zip(self.ends, self.domain, strict=False):
-            parameters[point] = end
+        if self.ends:
+            parameters[list(self.ends)] = self.domain
         return parameters
 
     def tangents(self, parameters: Reals) -> tuple[Reals, Reals, NDArray[np.bool_]]:
@@ -250,9 +250,8 @@ def empty_net(
         counts = tuple(len(np.atleast_1d(own)) - end for own, end in zip(knots, ends, strict=True))
     try:
         own = [uniform_knots(count, degree) for count, degree in zip(counts, degrees, strict=True)]
-        if knots is not None and not closed:
-            own = [np.asarray(each, dtype=np.float64) for each in knots]
-        own = [checked_knots(*each, "knots") for each in zip(own, degrees, counts, strict=True)]
+        every = own if knots is None or closed else knots
+        own = [checked_knots(*each, "knots") for each in zip(every, degrees, counts, strict=True)]
     except GeometryError as error:
         what = "curve" if len(degrees) == 1 else "surface"
         raise FitError(f"a {what} of degree {degrees} with {counts} control points: {error}") from error

@@ -142,7 +142,7 @@ class ShapeMatch(Generic[S]):
     @cached_property
     def singular_values(self) -> Reals:
         """Of the distances by the unknowns, each scaled to length one; largest first."""
-        slopes = np.asarray(np.linalg.qr(replace(self, power=2.0).jacobian, mode="r"))
+        slopes = np.asarray(np.linalg.qr(self.jacobian, mode="r"))
         size = np.sqrt(np.sum(slopes**2, axis=0))
         return np.asarray(np.linalg.svd(slopes / np.where(size > 0.0, size, 1.0), compute_uv=False))
 
@@ -227,10 +227,9 @@ class Problem(ConstrainedProblem, Generic[S]):
         return np.concatenate([found.jacobian, found.shape.bending(self.stiffness)[1]]), np.zeros((0, len(z)))
 
 
-def placed(shape: S, points: Reals, weights: Reals | None = None) -> ShapeMatch[S]:
-    """A shape beside points (m, d); they count alike unless there are weights."""
-    weights = np.ones(len(points)) if weights is None else weights
-    return ShapeMatch(shape=shape, points=points, weights=weights, parameters=shape.nearest(points))
+def placed(shape: S, points: Reals) -> ShapeMatch[S]:
+    """A shape beside points (m, d), which count alike."""
+    return ShapeMatch(shape=shape, points=points, weights=np.ones(len(points)), parameters=shape.nearest(points))
 
 
 def matched(match: ShapeMatch[S], stiffness: float, end: tuple[int, float] = LAST) -> ShapeMatch[S]:
