@@ -8,7 +8,7 @@ import pytest
 from bladewright.blade.design.cut import AtRadius, AtX, Cut
 from bladewright.blade.design.fillet import Fillet
 from bladewright.fitting.fit import fit
-from bladewright.fitting.placing import Finishing
+from bladewright.fitting.placing import finished
 from machines import COARSE, built, example
 
 PLAIN = example("compressor-stator").changed({"tolerance": COARSE, "hub_clearance": None})
@@ -52,6 +52,6 @@ def test_a_start_keeps_its_fillets_and_cuts_and_points_on_them_are_set_aside(giv
 
 
 def test_lengths_of_cuts_and_fillets_are_in_the_unit_of_the_design_that_gets_them():
-    inches = Finishing(design=FINISHED).given_to(example("vaned-diffuser").plain.changed("length_unit", "in"))
+    inches = finished(example("vaned-diffuser").plain.changed("length_unit", "in"), FINISHED)
     assert inches.hub_fillet.radius == pytest.approx(1.0 / 25.4)
     assert inches.cut.tip.radius == pytest.approx(225.0 / 25.4)

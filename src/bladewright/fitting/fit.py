@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bladewright.blade.design.row_design import LengthUnit
+from bladewright.blade.design.row_design import LengthUnit, RowDesign
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.blade.native.extrema import extrema_of
 from bladewright.derivatives.patterns import Patterns
@@ -32,10 +32,10 @@ from bladewright.fitting.matching.noise import EXACT
 from bladewright.fitting.matching.search import Match, Progress, Task, about_x
 from bladewright.fitting.placing import (
     UPRIGHT_NOTE,
-    Finishing,
     Matched,
     PlacedTask,
     Ways,
+    finished,
     nearest_of,
     placed_nearest,
     realigned,
@@ -296,15 +296,15 @@ def _reported(
     here: PlacedTask,
     target: MatchTarget,
     notes: tuple[str, ...],
-    finishing: Finishing | None,
+    finishing: RowDesign | None,
 ) -> Fit:
     task, failures = here.every, list[str]()
     task.progress("measuring")
     design, built = match.design, plain
     if finishing is not None:
         try:
-            finished = finishing.given_to(match.design)
-            built, design = finished.build(), finished
+            whole = finished(match.design, finishing)
+            built, design = whole.build(), whole
         except DesignError as error:
             failures.append(f"what is found cannot be cut or filleted as is given, and is left without: {error}")
     measurement = measured(task.points, plain, task.precision, hidden=here.hidden, finished=built)

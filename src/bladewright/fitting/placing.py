@@ -45,7 +45,6 @@ from bladewright.fitting.registration import (
     motion_rates,
     motion_scale,
 )
-from bladewright.nurbs.basis import Reals
 
 MOST_REALIGNMENTS = 4
 """realignments at most: a match follows each, and they bound the time to five matches (design/matching_constants.md)"""
@@ -66,68 +65,24 @@ CUT_PLACES = {"hub": "hub", "tip": "shroud", **{edge: edge for edge in EDGES}}
 """the edge or wall in whose place a cut is"""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Finishing:
-    """The cuts and fillets of a blade's design."""
-
-    design: RowDesign
-    """that has them"""
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The fields that the design before them is without."""
-        names = ("cut", "hub_fillet", "shroud_fillet", "hub_clearance", "tip_clearance")
-        return tuple(n for n in names if getattr(self.design, n) is not None and getattr(self.design.plain, n) is None)
-
-    @property
-    def cut(self) -> frozenset[str]:
-        """Edges and walls that are cut off."""
-        return frozenset(
-            place for name, place in CUT_PLACES.items() if getattr(self.design.cut, name, None) is not None
-        )
-
-    @property
-    def heights(self) -> dict[str, float]:
-        """The most that a fillet reaches above the wall [m], by the wall's name."""
-        sizes = {
-            wall: [v for path, v in self.design.parameters().items() if path.startswith(f"{wall}_fillet.")]
-            for wall in WALLS
-        }
-        return {wall: 2.0 * self.design.metre * max(each) for wall, each in sizes.items() if each}
-
-    def hides(self, points: Reals, start: Design) -> NDArray[np.str_]:
-        """Which of points (n, 3) [m] may lie on a `face` of fillets and cuts, by a plain design nearby; else empty."""
-        ends = dict(zip(WALLS, self.design.ends, strict=True))
-        reach = {ends[wall]: height for wall, height in self.heights.items()}
-        on_cut = ON_CUT * float(np.max(np.ptp(points, axis=0)))
-        off = off_walls(points, self.given_to(start).build())
-        hidden = np.any([far < reach.get(name, on_cut) for name, far in off.items()], axis=0)
-        return np.where(hidden, "face", "")
-
-    def shown(self, task: Task, free: FreeParameters, hidden: NDArray[np.str_]) -> Task:
-        """The task without the points that are hidden, and with what these would show held."""
-        return replace(
-            task.part(np.flatnonzero(hidden == "")),
-            free=replace(free, unseen=self.cut | {*self.heights}),
-            cut_edges=self.cut & {*EDGES},
-        )
-
-    def given_to(self, design: Design) -> Design:
-        """A design with the cuts and fillets, their lengths in its own unit."""
-        found = design.changed({name: getattr(self.design, name) for name in self.names})
-        scale = self.design.metre / found.metre  # type: ignore[attr-defined]
-        lengths = {
-            path: value * scale
-            for path, value in self.design.parameters().items()
-            if path.replace("[", ".").partition(".")[0] in self.names and unit_at(self.design, path) == "length"
-        }
-        return found if scale == 1.0 else found.changed(lengths)
+def finished(design: Design, given: RowDesign) -> Design:
+    """A design with the cuts and fillets of a given one, their lengths in its own unit."""
+    names = ("cut", "hub_fillet", "shroud_fillet", "hub_clearance", "tip_clearance")
+    own = {n: getattr(given, n) for n in names if getattr(given, n) is not None and getattr(given.plain, n) is None}
+    found = design.changed(own)
+    scale = given.metre / found.metre  # type: ignore[attr-defined]
+    lengths = {
+        path: value * scale
+        for path, value in given.parameters().items()
+        if path.replace("[", ".").partition(".")[0] in own and unit_at(given, path) == "length"
+    }
+    return found if scale == 1.0 else found.changed(lengths)
 
 
 def without_finishing(
     start: Design | None, like: Design | None, name: str
-) -> tuple[Finishing | None, Design | None, Design | None]:
-    """The cuts and fillets of a start, or of what the design is to be like, and both without them.
+) -> tuple[RowDesign | None, Design | None, Design | None]:
+    """The first with cuts and fillets of a start and what the design is to be like, and both without them.
 
     Without a start the search begins with the one that it is to be like, for what is cut off or behind a fillet is in
     no cloud.
@@ -136,7 +91,7 @@ def without_finishing(
     if given is None:
         return None, start, like
     first = given.changed("name", name) if start is None else start
-    return Finishing(design=given), first.plain, None if like is None else like.plain
+    return given, first.plain, None if like is None else like.plain
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -207,15 +162,29 @@ Matched = tuple[Match, Any, str]
 
 
 def shown_of(
-    every: Task, start: Design | None, finishing: Finishing | None, free: FreeParameters, walls: Walls
+    every: Task, start: Design | None, given: RowDesign | None, free: FreeParameters, walls: Walls
 ) -> tuple[Task, NDArray[np.str_] | None]:
-    """The task without what fillets, cuts and walls hide, and what these are."""
-    if finishing is not None and start is not None:
-        hidden = finishing.hides(every.points, start)
-        return finishing.shown(every, free, hidden), hidden
-    if walls.places:
+    """The task without what cuts and fillets of a given design, and walls, hide, and (n,) what these are.
+
+    Of cuts and fillets it is a `face`, where points are as near as a plain design tells; what they would show is held.
+    """
+    if given is None or start is None:
+        if not walls.places:
+            return every, None
         return replace(every.part(np.flatnonzero(walls.kinds == "")), walls=walls.places), walls.kinds
-    return every, None
+    cut = frozenset(place for name, place in CUT_PLACES.items() if getattr(given.cut, name, None) is not None)
+    reach, unseen = {}, {*cut}
+    for wall, end in zip(WALLS, given.ends, strict=True):
+        sizes = [size for path, size in given.parameters().items() if path.startswith(f"{wall}_fillet.")]
+        if sizes:
+            reach[end] = 2.0 * given.metre * max(sizes)
+            unseen.add(wall)
+    on_cut = ON_CUT * float(np.max(np.ptp(every.points, axis=0)))
+    off = off_walls(every.points, finished(start, given).build())
+    hidden = np.any([far < reach.get(name, on_cut) for name, far in off.items()], axis=0)
+    held = replace(free, unseen=frozenset(unseen))
+    shown = replace(every.part(np.flatnonzero(~hidden)), free=held, cut_edges=cut & {*EDGES})
+    return shown, np.where(hidden, "face", "")
 
 
 def realigned(
