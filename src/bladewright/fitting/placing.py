@@ -200,8 +200,8 @@ def realigned(
     """
     for _ in range(MOST_REALIGNMENTS):
         here, before = turns[-1], found[0]
-        step, gain = _step_beside(before) if has_systematic_misfit(before) else (None, 1.0)
-        if here.motion is None or step is None or gain > GAIN:
+        step = _step_beside(before) if has_systematic_misfit(before) else None
+        if here.motion is None or step is None:
             break
         here.every.progress("axes")
         notes = tuple(each for each in here.notes if not each.startswith(OTHER_BLADE_NOTE))
@@ -218,16 +218,13 @@ def realigned(
     return found
 
 
-def _step_beside(found: Match) -> tuple[Motion | None, float]:
-    """The motion's step while the shape follows, and the ratio by which residuals fall; None where there is no slope.
-
-    Parameters on a bound are held.
-    """
+def _step_beside(found: Match) -> Motion | None:
+    """The motion's step while the shape follows, parameters on a bound held; None where it is not worth a match."""
     problem, cloud = found.problem, found.problem.cloud_residuals
     z = problem.vector(found.design)
     values, derivatives = problem.values(z), problem.derivatives(z)
     if values is None or derivatives is None:
-        return None, 1.0
+        return None
     slopes = derivatives[0][:, problem.scales.inside(problem.values_of(found.design))]
     pivot, size = np.mean(cloud.points, axis=0), float(np.max(np.ptp(cloud.points, axis=0)))
     scale = motion_scale(cloud.points.shape[1], size)
@@ -243,7 +240,7 @@ def _step_beside(found: Match) -> tuple[Motion | None, float]:
     near = (np.sqrt(np.cumsum(parts**2)) < LONGEST_STEP * size) & (weight > WEAKEST_FREEDOM * weight[0])
     change = turned.T @ np.where(near, parts, 0.0)
     after = left + rows @ change
-    return motion_by(scale * change, pivot), float(np.sqrt(after @ after / (values[0] @ values[0])))
+    return None if np.sqrt(after @ after / (values[0] @ values[0])) > GAIN else motion_by(scale * change, pivot)
 
 
 def nearest_of(turns: list[PlacedTask], most: int) -> tuple[PlacedTask, Match, Any] | None:

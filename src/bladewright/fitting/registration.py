@@ -136,8 +136,8 @@ def _samples(sides: tuple[Side, Side]) -> tuple[Reals, Reals]:
         points = side(u, v) if isinstance(side, Surface) else side(u)
         rows = even_subset(points, SAMPLES // 2)
         at = footpoints_at(points[rows], sides, np.full(len(rows), k, dtype=np.intp), u[rows], v[rows])
-        found.append((at.points, at.normals))
-    return np.concatenate([points for points, _ in found]), np.concatenate([normals for _, normals in found])
+        found.append(at)
+    return np.concatenate([at.points for at in found]), np.concatenate([at.normals for at in found])
 
 
 def _starts(cloud: Reals, samples: Reals) -> list[Motion]:
@@ -388,5 +388,5 @@ def _chord(flat: Reals) -> Reals:
     one, other = hull[i], hull[j]
     along = (other - one) / square[i, j]
     x, y = (flat - one) @ along, (flat - one) @ np.array([-along[1], along[0]])
-    ends = [float(np.ptp(y[near])) if np.any(near) else 0.0 for near in (x < EDGE, x > 1.0 - EDGE)]
-    return np.array([one, other] if ends[0] >= ends[1] else [other, one])
+    first, last = (np.ptp(y[near]) for near in (x < EDGE, x > 1.0 - EDGE))
+    return np.array([one, other] if first >= last else [other, one])
