@@ -258,9 +258,5 @@ def _start(points: Reals, camber: int, thickness: int, *, round_end: bool) -> Ca
     heights = np.zeros(thickness)
     inner = slice(1, -1) if round_end else slice(1, None)
     heights[inner] = np.linalg.lstsq(rows[:, inner], half, rcond=None)[0]
-    points = np.stack([abscissae, heights], axis=-1)
-    return CamberThickness(
-        camber=net_of(line),
-        thickness=Net(knots=(knots,), degrees=(DEGREE,), points=points, log_weights=np.zeros(thickness), weighted=True),
-        round_end=round_end,
-    )
+    half_thickness = net_of(Curve(control_points=np.stack([abscissae, heights], -1), knots=knots, degree=DEGREE))
+    return CamberThickness(camber=net_of(line), thickness=half_thickness.freed, round_end=round_end)
