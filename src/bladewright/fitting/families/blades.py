@@ -245,7 +245,7 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
         try:
             section = part_of_laws(_along_span(frame.shapes, chosen))
             design = _blade_of(found, frame, kind.blade, section, like, header)
-            blades.append((compared(few.turned(frame.turn), [design])[0], frame))
+            blades.append((compared(few.turned(frame.turn), [design], rounds=1)[0], frame))
         except (DesignError, FitError) as error:
             refusal = error
     if not blades:

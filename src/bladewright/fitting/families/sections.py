@@ -229,12 +229,12 @@ def designs_of(
         yield task.free.applied(design) if isinstance(task.free, FreeParameters) else design
 
 
-def compared(task: Task, designs: Iterable[Design]) -> list[Match]:
+def compared(task: Task, designs: Iterable[Design], *, rounds: int = TRIAL_ROUNDS) -> list[Match]:
     """Searches from several designs, nearest first; raises the last refusal where none has a shape."""
     found, refusal = [], FitError("no structure of the family was tried")
     for design in designs:
         try:
-            found.append(searched(task, design, rounds=TRIAL_ROUNDS, fading=True))
+            found.append(searched(task, design, rounds=rounds, fading=True))
         except (DesignError, FitError) as error:
             refusal = FitError(str(error))
     if not found:
