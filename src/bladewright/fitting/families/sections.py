@@ -84,43 +84,39 @@ def matched_section(
     structure = None if like is None else structure_of(like)
     off = misfits(tried[:CONSIDERED])
     promising = [each.design for each, miss in zip(tried, off, strict=False) if miss < PROMISING * off[0]]
-    contours = kind.has_contours and like is None
-    try:
-        found, reason = nearest(task, promising, target, structure)
-    except FitError:
-        if not contours:
-            raise
-        found, reason = tried[0], ""
-    if contours and is_far(found, target):
+    found, reason = nearest(task, promising, target, structure)
+    if kind.has_contours and like is None and is_far(found, target):
         outline, note = _through_points(task, kind, tried, header, target, found)
-        if outline is not None and criterion(outline, target) < criterion(found, target):
+        if outline is not None and (criterion(outline, target) < criterion(found, target) or not _is_built(found)):
             found, reason = outline, note
     return buildable_tolerance(found), reason
 
 
 def nearest(task: Task, designs: Sequence[Design], target: MatchTarget, like: Any) -> tuple[Match, str]:
-    """The best of the matches that begin with several designs, and why it ends where no target is met."""
+    """The best of the matches that begin with several designs, and why it ends where no target is met.
+
+    One that can be built comes before one that cannot. Raises the last refusal where no design has a shape.
+    """
     found: list[tuple[Match, str]] = []
     refusal: Exception = FitError("no design of the family was tried")
     for design in designs:
         check_bounds(design, task.free(design), task.bounds)
         try:
-            fresh = selected_match(task, design, target, like=like, guessed=True)
+            found.append(selected_match(task, design, target, like=like, guessed=True))
         except (DesignError, FitError) as error:
             refusal = error
             continue
-        if can_be_built(_within(fresh[0].design, TOLERANCES[-1])):
-            found.append(fresh)
-            if fresh[0].maximum < NEAR * fresh[0].model.chord:
-                break
-        else:
-            refusal = FitError(
-                "a design of the family was found near the points that cannot be built: try another family, or give a "
-                "start"
-            )
+        if _is_built(found[-1][0]) and found[-1][0].maximum < NEAR * found[-1][0].model.chord:
+            break
     if not found:
         raise FitError(str(refusal)) from refusal
-    return min(found, key=lambda each: criterion(each[0], target))
+    built = [each for each in found if _is_built(each[0])]
+    return min(built or found, key=lambda each: criterion(each[0], target))
+
+
+def _is_built(match: Match) -> bool:
+    """Whether a match can be built at one of the tolerances."""
+    return can_be_built(_within(match.design, TOLERANCES[-1]))
 
 
 def criterion(match: Match, target: MatchTarget) -> tuple[int, float]:
@@ -208,7 +204,7 @@ def _outlined(task: Task, kind: FitFamily, start: Match, count: int, header: Des
         found = searched(task, first, min_reduction=ROUGH_REDUCTION, fading=True)
     except (DesignError, FitError):
         return None
-    return found if can_be_built(_within(found.design, TOLERANCES[-1])) else None
+    return found if _is_built(found) else None
 
 
 def designs_of(
