@@ -32,15 +32,15 @@ FIGURES = ("mean", "rms", "percentile_99", "maximum")
 
 @dataclass(frozen=True, kw_only=True)
 class Motion:
-    """A rigid motion: `points @ rotation.T + translation`."""
+    """A rigid motion in d dimensions: `points @ rotation.T + translation`."""
 
     rotation: Reals
-    """(3, 3)"""
+    """(d, d)"""
     translation: Reals
-    """(3,) [m]"""
+    """(d,) [m]"""
 
     def __call__(self, points: Reals) -> Reals:
-        """Moved points (..., 3)."""
+        """Moved points (..., d)."""
         return points @ self.rotation.T + self.translation
 
 

@@ -17,6 +17,7 @@ from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.freeform.fits import FreeformFit, Request
 from bladewright.fitting.freeform.net import DIRECTIONS, empty_net, matched_within, net_of
 from bladewright.numerics.elementary import cumulative_length
+from bladewright.numerics.single_thread import single_threaded
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.closest import Descents
 from bladewright.nurbs.curve import Curve
@@ -43,6 +44,7 @@ class CurveFit(FreeformFit):
     """(n,) parameters of the nearest places"""
 
 
+@single_threaded
 def fit_curve(
     points: ArrayLike,
     *,
@@ -157,6 +159,7 @@ class SurfaceFit(FreeformFit):
     """(n,)"""
 
 
+@single_threaded
 def fit_surface(
     points: ArrayLike,
     *,

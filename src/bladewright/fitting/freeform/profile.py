@@ -19,6 +19,7 @@ from bladewright.fitting.freeform.net import LAST_STEP, Net, net_of
 from bladewright.fitting.freeform.search import Shape, matched_by_stages, placed
 from bladewright.fitting.initial_guess.slices import PLACES, PlanePoints, longest_chord, slices_of
 from bladewright.numerics.elementary import Array, length, turned_left
+from bladewright.numerics.single_thread import single_threaded
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.descent import descended
@@ -159,6 +160,7 @@ class ProfileFit(FreeformFit):
         return of(at if upper else -np.maximum(at, 1e-300))
 
 
+@single_threaded
 def fit_profile(
     points: ArrayLike,
     *,
