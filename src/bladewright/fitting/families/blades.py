@@ -213,8 +213,8 @@ class _Frame:
 def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: DesignHeader) -> tuple[float, Design]:
     """The blade of the family nearest to the points whose sections are those of a closed blade; the turn of its frame.
 
-    Planes and kinds of section that those in the middle hardly tell apart are told apart by a short search of whole
-    blades, of each plane with theta counted from where these meet it best.
+    Planes and kinds of section that those in the middle hardly tell apart are told apart by whole blades, each searched
+    for a round (design/matching.md), of each plane with theta counted from where these meet it best.
     """
     built = [closed.exact.section(float(v)) for v in SECTION_SPANS]
     found, middle = ClosedChannel(exact=closed.exact), section_shape(built[MIDDLE])
