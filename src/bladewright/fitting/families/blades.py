@@ -26,6 +26,7 @@ from bladewright.fitting.families.section_shape import PLACES, SectionShape, sec
 from bladewright.fitting.families.sections import (
     CONSIDERED,
     PROMISING,
+    TRIAL_ROUNDS,
     compared,
     criterion,
     designs_of,
@@ -213,8 +214,8 @@ class _Frame:
 def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: DesignHeader) -> tuple[float, Design]:
     """The blade of the family nearest to the points whose sections are those of a closed blade; the turn of its frame.
 
-    Planes and kinds of section that those in the middle hardly tell apart are told apart by whole blades, each searched
-    for a round (design/matching.md), of each plane with theta counted from where these meet it best.
+    Planes and kinds of section that those in the middle hardly tell apart are told apart by a short search of whole
+    blades, of each plane with theta counted from where these meet it best.
     """
     built = [closed.exact.section(float(v)) for v in SECTION_SPANS]
     found, middle = ClosedChannel(exact=closed.exact), section_shape(built[MIDDLE])
@@ -236,16 +237,17 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
             refusal = error
     few, blades = task.thinned(QUICK_POINTS), list[tuple[Match, _Frame]]()
     off = misfits([match for match, _ in tried]) if tried else []
-    for number in np.argsort(off, kind="stable"):
+    promising = [number for number in np.argsort(off, kind="stable") if off[number] <= PROMISING * min(off)]
+    # of one nothing is to be decided
+    rounds = TRIAL_ROUNDS if len(promising) > 1 else 1
+    for number in promising:
         chosen, frame = tried[number]
-        if off[number] > PROMISING * min(off):
-            break
         if any(frame.plane == each.plane and frame is not each for _, each in blades):
             continue
         try:
             section = part_of_laws(_along_span(frame.shapes, chosen))
             design = _blade_of(found, frame, kind.blade, section, like, header)
-            blades.append((compared(few.turned(frame.turn), [design], rounds=1)[0], frame))
+            blades.append((compared(few.turned(frame.turn), [design], rounds=rounds)[0], frame))
         except (DesignError, FitError) as error:
             refusal = error
     if not blades:

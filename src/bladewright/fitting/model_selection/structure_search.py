@@ -284,11 +284,14 @@ class StructureSearch:
         return rows_shown(match.state.footpoints.part(match.rows))
 
     def _widened(self, match: Match) -> Match:
-        """A match with more control points in every law, not searched, or the same where that leaves it no shape."""
+        """A match with more control points in every law after a round, or the same where that leaves it no shape.
+
+        The nearest laws of more control points may be several times as far off: nothing narrow is predicted about them.
+        """
         try:
             free, rows = self.task.free(match.design), self._rows_shown(match)
             design = reshaped(match.design, wider_structure(match.design, free, len(self.task.points), rows))
-            return searched(self.task, design, noise=match.rms, rounds=0)
+            return searched(self.task, design, noise=match.rms, rounds=1, min_reduction=ROUGH_REDUCTION)
         except (DesignError, FitError):
             return match
 
