@@ -222,7 +222,9 @@ class StructureSearch:
 
         found, nearest = rich if kept(rich) and not is_refused(rich) else None, None
         if kept(rich) or has_systematic_misfit(rich):
-            found, nearest = self._fewest(rich, found, predicted=predicted, search=reweighted_search, kept=kept)
+            found, nearest = self._fewest(
+                rich, found, rounds=1, predicted=predicted, search=reweighted_search, kept=kept
+            )
         if found is not None:
             return found, ""
         nearest = min(filter(None, (rich, nearest)), key=lambda each: largest_of(each, rich))
@@ -238,13 +240,15 @@ class StructureSearch:
         predicted: Callable[[LinearModel], list[Prediction]],
         search: Callable[[LinearModel, Prediction], Match | None],
         kept: Callable[[Match], bool],
+        rounds: int = 0,
     ) -> tuple[Match | None, Match | None]:
         """The match of fewest parameters found that is `kept`, and the nearest of those that are not.
 
-        Each structure is `predicted` to be kept about the last match, with more control points in every law, as a
-        linear model about a rich match does not reach as far as narrow structures lie. Where its `search` leads no
-        nearer, or nothing is predicted there that is wider than what has failed, one between this and the last that did
-        is searched. A rich match that is kept is the first of them, so that none is searched that would save little.
+        Each structure is `predicted` to be kept about the last match, with more control points in every law and after
+        so many `rounds`, as a linear model about a rich match does not reach as far as narrow structures lie. Where its
+        `search` leads no nearer, or nothing is predicted there that is wider than what has failed, one between this and
+        the last that did is searched. A rich match that is kept is the first of them, so that none is searched that
+        would save little.
         """
         nearest, least, about, failed, narrowest = None, np.inf, rich, 0, True
         for _ in range(self.predictions):
@@ -264,7 +268,7 @@ class StructureSearch:
                 if match is not None and (enough or largest_of(match, rich) < least):
                     found, nearest = (match, nearest) if enough else (found, match)
                     least = np.inf if enough else largest_of(match, rich)
-                    about, narrowest = self._widened(match), True
+                    about, narrowest = self._widened(match, rounds), True
                     continue
             if about is last and not (promising and predictions):
                 break
@@ -283,15 +287,15 @@ class StructureSearch:
                 match = evaluated(self.task, match.design, noise=match.rms)
         return rows_shown(match.state.footpoints.part(match.rows))
 
-    def _widened(self, match: Match) -> Match:
-        """A match with more control points in every law after a round, or the same where that leaves it no shape.
+    def _widened(self, match: Match, rounds: int = 0) -> Match:
+        """A match with more control points in every law after some rounds, or the same where that leaves it no shape.
 
-        The nearest laws of more control points may be several times as far off: nothing narrow is predicted about them.
+        The nearest laws of more control points may be several times as far off (design/matching.md).
         """
         try:
             free, rows = self.task.free(match.design), self._rows_shown(match)
             design = reshaped(match.design, wider_structure(match.design, free, len(self.task.points), rows))
-            return searched(self.task, design, noise=match.rms, rounds=1, min_reduction=ROUGH_REDUCTION)
+            return searched(self.task, design, noise=match.rms, rounds=rounds, min_reduction=ROUGH_REDUCTION)
         except (DesignError, FitError):
             return match
 
