@@ -22,7 +22,7 @@ def found_by(monkeypatch):
     """Runs the search from a rich match: what it finds, the nearest that fails, and what it searched."""
     monkeypatch.setattr(StructureSearch, "_model", lambda _, match: match)
     monkeypatch.setattr(StructureSearch, "_built", lambda _, match: match)
-    monkeypatch.setattr(StructureSearch, "_widened", lambda _, match: SimpleNamespace(**vars(match)))
+    monkeypatch.setattr(StructureSearch, "_widened", lambda _, match, _rounds: SimpleNamespace(**vars(match)))
 
     def run(predicted, enough, largest, shapeless=()):
         searched = []
