@@ -13,6 +13,7 @@ from bladewright.fitting.model_selection.elimination import LinearModel, best_of
 from bladewright.fitting.model_selection.reshaping import rich_structure, wider_structure
 from bladewright.fitting.model_selection.selection import selected_match
 from bladewright.fitting.model_selection.structure import reshaped, resizable_laws, structure_of
+from bladewright.fitting.model_selection.structure_search import StructureSearch
 from bladewright.section.unified_limits import THICKNESSES
 from machines import example
 from machines.stations import AXIAL
@@ -137,6 +138,17 @@ def test_noise_is_not_followed_where_nothing_is_asked():
     # a rich structure has 58
     assert len(found.problem.paths) < 40
     assert found.rms * found.model.chord < 1.2 * noise
+
+
+def test_a_widened_match_comes_nearer_by_a_round():
+    narrow = structure_of(MADE)
+    for name in THICKNESSES:
+        narrow = narrow.resized(name, (3, 1))
+    found = searched(task(), reshaped(MADE, narrow), rounds=2)
+    search = StructureSearch(task=task(), samples=0, first=found.design)
+    plain, after = (search._widened(found, rounds) for rounds in (0, 1))
+    assert structure_of(plain.design) == structure_of(after.design) != narrow
+    assert after.misfit < 0.5 * min(plain.misfit, found.misfit)
 
 
 def test_few_points_have_a_structure_of_few_control_points():

@@ -13,8 +13,8 @@ T = TypeVar("T")
 def single_threaded(function: Callable[P, T]) -> Callable[P, T]:
     """The function with one BLAS thread while it runs: more wait for each other, and end in another rounding.
 
-    Of a match by two threads on two idle cores the processor takes twice as long, the clock a tenth longer; beside
-    other work ten times as long (design/matching.md).
+    By two threads on two idle cores a match takes a tenth longer, and a plain fit of a curve or surface twice as long
+    (design/matching.md).
     """
 
     @wraps(function)

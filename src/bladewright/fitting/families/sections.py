@@ -97,7 +97,7 @@ def nearest(task: Task, designs: Sequence[Design], target: MatchTarget, like: An
 
     One that can be built comes before one that cannot. Raises the last refusal where no design has a shape.
     """
-    found: list[tuple[Match, str]] = []
+    found, built = list[tuple[Match, str]](), list[tuple[Match, str]]()
     refusal: Exception = FitError("no design of the family was tried")
     for design in designs:
         check_bounds(design, task.free(design), task.bounds)
@@ -106,11 +106,13 @@ def nearest(task: Task, designs: Sequence[Design], target: MatchTarget, like: An
         except (DesignError, FitError) as error:
             refusal = error
             continue
-        if _is_built(found[-1][0]) and found[-1][0].maximum < NEAR * found[-1][0].model.chord:
-            break
+        match, _ = found[-1]
+        if _is_built(match):
+            built.append(found[-1])
+            if match.maximum < NEAR * match.model.chord:
+                break
     if not found:
         raise FitError(str(refusal)) from refusal
-    built = [each for each in found if _is_built(each[0])]
     return min(built or found, key=lambda each: criterion(each[0], target))
 
 

@@ -31,8 +31,8 @@ many along ended Rotor 67 in a blade that cannot be built (design/matching.md)""
 SMALLEST_JACOBIAN = 0.02
 """smallest Jacobian of a channel, of its median: one that comes nearer to folding over is held there;
 half and twice change nothing measured (design/matching_constants.md)"""
-FINITE_OR_NOT = np.errstate(invalid="ignore", divide="ignore", over="ignore")
-"""without warnings of what is not finite, which the shape itself tells"""
+WITHOUT_WARNINGS = np.errstate(invalid="ignore", divide="ignore", over="ignore")
+"""of numpy about what is not finite, which the shape itself tells"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -63,7 +63,7 @@ class Model(ABC):
     rounded: bool = False
     """whether all sections end in rounded edges, whose arcs the two sides share"""
 
-    @FINITE_OR_NOT
+    @WITHOUT_WARNINGS
     def shape(self, design: Design) -> ModelShape:
         """The sides of a design; raises DesignError where there are none at all."""
         return self._shape(design)

@@ -20,8 +20,8 @@ from bladewright.blade.native.knots import Knots
 from bladewright.blade.native.refinement import mean_chord, refined_knots
 from bladewright.fitting.models.blunt_edges import BluntEdges, closed_knots, closed_nets, closed_with
 from bladewright.fitting.models.model import (
-    FINITE_OR_NOT,
     FOLD_GRID,
+    WITHOUT_WARNINGS,
     ModelShape,
     SectionModel,
     SpatialModel,
@@ -103,7 +103,7 @@ class PlanarModel(SectionModel):
 class SectionedModel(SpatialModel):
     """A blade from sections of any family, at the knots that one design needs for a tolerance, of the chord."""
 
-    @FINITE_OR_NOT
+    @WITHOUT_WARNINGS
     def __init__(self, design: SectionedBlade, tolerance: float | None = None) -> None:
         own = replace(design, tolerance=design.tolerance if tolerance is None else tolerance)
         exact = exact_blade_of_sections(own, checked=False)

@@ -14,8 +14,8 @@ from bladewright.blade.native.knots import DEGREE, Knots
 from bladewright.blade.native.refinement import mean_chord, refined_knots
 from bladewright.derivatives.complex_step import STEP, stepped_design, steps_of
 from bladewright.fitting.models.model import (
-    FINITE_OR_NOT,
     FOLD_GRID,
+    WITHOUT_WARNINGS,
     ModelShape,
     SectionModel,
     SpatialModel,
@@ -72,7 +72,7 @@ class UnifiedBladeModel(SpatialModel):
 
     rounded = True
 
-    @FINITE_OR_NOT
+    @WITHOUT_WARNINGS
     def __init__(self, design: UnifiedBlade, tolerance: float | None = None) -> None:
         self.tolerance = design.tolerance if tolerance is None else tolerance
         exact = exact_unified_blade(design.changed("tolerance", self.tolerance), tentative=True)
