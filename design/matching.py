@@ -218,7 +218,7 @@ COUNTS = ("planted", "kept", "good", "dropped")
 
 def named(row, names):
     """Whether a row, or its group, is one of some names or patterns."""
-    return any(name == row.group or fnmatch.fnmatch(row.name, name) for name in names)
+    return any(fnmatch.fnmatch(each, name) for each in (row.name, row.group) for name in names)
 
 
 def main():
