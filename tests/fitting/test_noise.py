@@ -88,7 +88,18 @@ def test_points_past_an_end_are_outliers_though_they_have_no_height():
     on = placed_feet(side, u, v, points, normals, heights)
     on.miss[at, 2] += 0.01
     assert not noise_of(on.points + on.miss, on).inliers[at]
-    assert noise_of(on.points + on.miss, on, allow_outliers=False).inliers.all()
+    trusted = np.arange(len(u)) == at
+    assert noise_of(on.points + on.miss, on, trusted=trusted).inliers[at]
+
+
+def test_a_row_that_few_control_points_miss_is_cut_off_unless_a_richer_match_is_known_to_meet_it():
+    side, u, v, points, normals, heights = made(2, dimension=3)
+    row = v < 0.03
+    heights += np.where(row, 0.02 * np.sin(np.pi * u), 0.0)
+    missed = row & (heights > 0.01)
+    on = placed_feet(side, u, v, points, normals, heights)
+    assert not noise_of(on.points + on.miss, on).inliers[missed].any()
+    assert noise_of(on.points + on.miss, on, trusted=missed).inliers[missed].all()
 
 
 def test_points_repeat_each_other_where_neighbours_share_the_misfit():

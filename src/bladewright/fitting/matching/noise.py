@@ -252,9 +252,9 @@ class NoiseEstimate:
 
 
 def noise_of(
-    points: Reals, footpoints: Footpoints, weights: Reals | None = None, *, allow_outliers: bool = True
+    points: Reals, footpoints: Footpoints, weights: Reals | None = None, *, trusted: NDArray[np.bool_] | None = None
 ) -> NoiseEstimate:
-    """The noise estimate of points (n, d) about their footpoints; unless `allow_outliers`, every point is an inlier.
+    """The noise estimate of points (n, d) about their footpoints; those `trusted` (n,) are no outliers.
 
     Weights (n,) are inverse variances relative to each other. A point of weight 0 tells nothing of the noise, and is an
     outlier where it lies further off than every inlier.
@@ -263,10 +263,11 @@ def noise_of(
     if len(rows) == len(points):
         rows = random_subset(len(points), COMPARED_POINTS)
     if len(rows) < len(points):
-        return _noise_of_some(points, footpoints, weights, rows, allow_outliers=allow_outliers)
+        return _noise_of_some(points, footpoints, weights, rows, trusted)
     weights = np.ones(len(points)) if weights is None else weights / np.mean(weights)
     heights, around = footpoints.heights, neighbourhood_of(points, footpoints)
-    inliers = ~_outliers_of(footpoints, weights, around) if allow_outliers else np.ones(len(points), dtype=bool)
+    inliers = ~_outliers_of(footpoints, weights, around)
+    inliers = inliers if trusted is None else inliers | trusted
     index = around.index
     kept = inliers & inliers[index].all(axis=1)
     kept = kept if np.any(kept) else np.ones(len(points), dtype=bool)
@@ -305,16 +306,19 @@ def _linear_shares(places: Reals, beside: Reals, normals: Reals) -> Reals:
 
 
 def _noise_of_some(
-    points: Reals, footpoints: Footpoints, weights: Reals | None, rows: NDArray[np.intp], *, allow_outliers: bool
+    points: Reals,
+    footpoints: Footpoints,
+    weights: Reals | None,
+    rows: NDArray[np.intp],
+    trusted: NDArray[np.bool_] | None,
 ) -> NoiseEstimate:
     """The noise estimate of the points in `rows`, and which of the others are inliers by it.
 
     Those are level with an inlier beside them, or where they have no weight no further off than every inlier.
     """
     part = footpoints.part(rows)
-    found = noise_of(points[rows], part, None if weights is None else weights[rows], allow_outliers=allow_outliers)
-    if not allow_outliers:
-        return replace(found, inliers=np.ones(len(points), dtype=bool))
+    known = None if trusted is None else trusted[rows]
+    found = noise_of(points[rows], part, None if weights is None else weights[rows], trusted=known)
     kept = part.part(found.inliers)
     if weights is not None and not np.all(weights > 0.0):
         inliers = footpoints.distances <= np.max(kept.distances)
@@ -324,4 +328,4 @@ def _noise_of_some(
         near = EXACT * float(np.max(np.ptp(points, axis=0)))
         inliers = footpoints.distances - kept.distances[beside] <= OUTLYING_NOISE * level + near
     inliers[rows] = found.inliers
-    return replace(found, inliers=inliers)
+    return replace(found, inliers=inliers if trusted is None else inliers | trusted)

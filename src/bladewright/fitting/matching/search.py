@@ -86,6 +86,8 @@ class Task:
     """(n,) inverse variances of the points, relative to each other; None where they are equal"""
     allow_outliers: bool = True
     """whether points may be outliers; where none may, edges stand out of exact ones no further than of noisy ones"""
+    trusted: NDArray[np.bool_] | None = None
+    """(n,) points that are no outliers"""
     cut_edges: frozenset[str] = frozenset()
     """edges that are cut off, which may stand out of the cloud"""
     preliminary: bool = False
@@ -124,12 +126,18 @@ class Task:
         """The same task with some parameters held that the points do not determine."""
         return replace(self.without(held), held=self.held | {*held})
 
+    def trusting(self, match: "Match") -> "Task":
+        """The same task, in which no point is an outlier that a match of it counts as the blade's."""
+        return replace(self, trusted=match.rows)
+
     def part(self, rows: NDArray[np.intp]) -> "Task":
         """The same task with some of the points (m,)."""
         if len(rows) == len(self.points):
             return self
         precision = None if self.precision is None else self.precision[rows]
-        return replace(self, points=self.points[rows], weights=self.weights[rows], precision=precision)
+        trusted = None if self.trusted is None else self.trusted[rows]
+        part = replace(self, points=self.points[rows], weights=self.weights[rows])
+        return replace(part, precision=precision, trusted=trusted)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -283,7 +291,8 @@ def evaluated(task: Task, design: Design, *, noise: float | None, before: Match 
     if not shape.finite:
         raise FitError("the start design has no shape near its edges: give another start, or none")
     footpoints = nearest_footpoints(points, shape.sides)
-    noise_estimate = noise_of(points, footpoints, task.precision, allow_outliers=task.allow_outliers)
+    trusted = task.trusted if task.allow_outliers else np.ones(len(points), dtype=bool)
+    noise_estimate = noise_of(points, footpoints, task.precision, trusted=trusted)
     walls = task.walls or (task.outline if task.preliminary else ())
     ends = blade_ends_of(points, footpoints, shape, noise_estimate.inliers, walls)
     rows = noise_estimate.inliers & ~ends.on_end_face

@@ -23,13 +23,14 @@ from bladewright.fitting.matching.search import (
     without_false_outliers,
 )
 from bladewright.fitting.model_selection.edges import from_other_edges, nearest_from_other_edges, with_sharp_edges
+from bladewright.fitting.model_selection.elimination import reweighted
 from bladewright.fitting.model_selection.structure import Structure, reshaped, structure_of
 from bladewright.fitting.model_selection.structure_search import (
     ENOUGH,
     NEAR,
     NEAR_RICH,
     StructureSearch,
-    confirmed_match,
+    nearest_to_tolerance,
 )
 
 GUESS_NOISE = 3e-3
@@ -69,7 +70,7 @@ def selected_match(
     search = StructureSearch(task=several, samples=(like or structure_of(first)).samples, first=found.design)
     if task.dimension == 3 and guessed:
         # laws that need no control points along the span begin as constants
-        found = replace(search, task=few, predictions=1).well_predicted(found)
+        found = replace(search, task=few.trusting(found), predictions=1).well_predicted(found)
         search = replace(search, first=found.design)
     near = target.open and found.maximum < NEAR * found.model.chord
     rich = found if near else search.rich(found, target, sampled=target.parameters is None)
@@ -77,10 +78,17 @@ def selected_match(
         # no richer one has a shape, or none is needed: the first match, of few points, stands
         rich = evaluated(several, rich.design, noise=rich.rms)
     rich = without_false_outliers(several, rich)
+    # narrower matches tell outliers less
+    many = many.trusting(evaluated(many, rich.design, noise=rich.rms))
+    search = replace(search, task=several.trusting(rich))
     if target.tolerance is not None:
         found, reason = search.within(rich, target.tolerance)
-        confirmed = len(many.points) == len(several.points)
-        return (found if confirmed else confirmed_match(many, found, target.tolerance)), reason
+        if len(many.points) > len(several.points):
+            found = evaluated(many, found.design, noise=found.rms)
+            if found.maximum > target.tolerance:
+                weights = reweighted(many.weights, found.state.footpoints.distances, target.tolerance)
+                found = nearest_to_tolerance(many, found, weights, target.tolerance)
+        return found, reason
     if target.parameters is not None:
         sized = search.of_size(rich, target.parameters)
         return _searched_further(many, sized if len(sized.problem.paths) <= target.parameters else found), reason

@@ -155,7 +155,7 @@ class StructureSearch:
             fresh = min(islice(built, max(1, TRIED_PARAMETERS // most)), key=lambda each: each.misfit, default=None)
             if fresh is None or (best is not None and fresh.misfit >= best.misfit):
                 break
-            best, about = fresh, self._widened(fresh)
+            best, about = fresh, self._widened(fresh, rounds=self.task.dimension - 2)
         return best or rich
 
     def _built(self, match: Match) -> Match | None:
@@ -177,7 +177,7 @@ class StructureSearch:
         # what the rich match leaves is the noise, where its neighbours share none of it (Morozov 1966)
         whole = model.prediction(model.counts)
         noise = (0.0 if whole is None else whole.deviation) * (1.0 + NOISE_QUANTILE / np.sqrt(2.0 * model.points))
-        systematic, exact, least = has_systematic_misfit(rich), is_exact(rich), largest_of(rich, rich)
+        systematic, exact, least = has_systematic_misfit(rich), is_exact(rich), rich.maximum
 
         def predicted(model: LinearModel) -> list[Prediction]:
             candidates = eliminated(model, 0)
@@ -190,7 +190,7 @@ class StructureSearch:
         def kept(match: Match) -> bool:
             # one that is nearer than the rich match shows that others can be
             nonlocal least
-            largest, chord = largest_of(match, rich), rich.model.chord
+            largest, chord = match.maximum, rich.model.chord
             least = min(least, largest)
             limit = NEAR if exact or least <= NEAR * chord else NEAR_EVERYWHERE
             return not has_systematic_misfit(match) or largest <= max(limit * chord, NEAR_RICH * least)
@@ -201,10 +201,10 @@ class StructureSearch:
     def near_everywhere(self, rich: Match) -> Match:
         """The match that predicts well, or one that is nearer where that is far from some points."""
         found, limit = self.well_predicted(rich), trusted_distance(rich)
-        if not has_systematic_misfit(found) or largest_of(found, rich) <= limit or rich.maximum > limit:
+        if not has_systematic_misfit(found) or found.maximum <= limit or rich.maximum > limit:
             return found
         nearer, _ = self.within(rich, limit)
-        return nearer if largest_of(nearer, rich) < largest_of(found, rich) and not is_refused(nearer) else found
+        return nearer if nearer.maximum < found.maximum and not is_refused(nearer) else found
 
     def within(self, rich: Match, tolerance: float) -> tuple[Match, str]:
         """The match of fewest parameters found that keeps a tolerance [m]; the nearest, and why, where none does."""
@@ -215,10 +215,10 @@ class StructureSearch:
 
         def reweighted_search(model: LinearModel, prediction: Prediction) -> Match | None:
             start = self._start(model, prediction)
-            return start and nearest_to_tolerance(self.task, start, prediction.weights, rich, tolerance)
+            return start and nearest_to_tolerance(self.task, start, prediction.weights, tolerance)
 
         def kept(match: Match) -> bool:
-            return largest_of(match, rich) <= tolerance
+            return match.maximum <= tolerance
 
         found, nearest = rich if kept(rich) and not is_refused(rich) else None, None
         if kept(rich) or has_systematic_misfit(rich):
@@ -227,7 +227,7 @@ class StructureSearch:
             )
         if found is not None:
             return found, ""
-        nearest = min(filter(None, (rich, nearest)), key=lambda each: largest_of(each, rich))
+        nearest = min(filter(None, (rich, nearest)), key=lambda each: each.maximum)
         if not has_systematic_misfit(nearest):
             return self.well_predicted(rich), NOISE_REASON.format(1e3 * rich.noise_estimate.noise)
         return nearest, "no structure was found that keeps the tolerance"
@@ -265,9 +265,9 @@ class StructureSearch:
                 enough = match is not None and kept(match)
                 if predictions and not enough:
                     failed = chosen.parameters
-                if match is not None and (enough or largest_of(match, rich) < least):
+                if match is not None and (enough or match.maximum < least):
                     found, nearest = (match, nearest) if enough else (found, match)
-                    least = np.inf if enough else largest_of(match, rich)
+                    least = np.inf if enough else match.maximum
                     about, narrowest = self._widened(match, rounds), True
                     continue
             if about is last and not (promising and predictions):
@@ -333,9 +333,9 @@ TOUCHED = 0.05
 same ratio as the one before (design/matching_constants.md)."""
 
 
-def nearest_to_tolerance(task: Task, start: Match, weights: Reals, rich: Match, tolerance: float) -> Match:
+def nearest_to_tolerance(task: Task, start: Match, weights: Reals, tolerance: float) -> Match:
     """The match nearest to a tolerance [m] of searches of one structure, whose weights (n,) rise with the distances."""
-    tried, last, before = list[Match](), start, np.inf
+    tried, last, before = [start], start, np.inf
     weights = np.where(weights > 0.0, weights, task.weights)
     for left in reversed(range(REWEIGHTED_SEARCHES)):
         weighted = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
@@ -344,30 +344,8 @@ def nearest_to_tolerance(task: Task, start: Match, weights: Reals, rich: Match, 
         except (FitError, DesignError):
             break
         tried.append(last)
-        excess = largest_of(last, rich) - tolerance
+        excess = last.maximum - tolerance
         if excess <= 0.0 or (excess / before) ** left * excess > TOUCHED * tolerance:
             break
         before, weights = excess, reweighted(weights, last.state.footpoints.distances, tolerance)
-    return min(tried, key=lambda each: largest_of(each, rich), default=start)
-
-
-def largest_of(match: Match, rich: Match) -> float:
-    """The largest distance [m] of the points that take part in a match or in a rich one: none that either leaves out.
-
-    But for those that lie on an end face, inside the blade.
-    """
-    rows = (rich.rows | match.rows) & ~match.ends.on_end_face
-    return float(np.max(match.state.footpoints.distances[rows]))
-
-
-def confirmed_match(task: Task, match: Match, tolerance: float) -> Match:
-    """A match of some of the points that keeps a tolerance at more of them, by their weights."""
-    found = match
-    for _ in range(REWEIGHTED_SEARCHES):
-        found = searched(task, found.design, noise=match.rms, rounds=0)
-        if found.maximum <= tolerance:
-            break
-        weights = reweighted(task.weights, found.state.footpoints.distances, tolerance)
-        task = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
-        found = searched(task, found.design, noise=match.rms, rounds=1, min_reduction=ROUGH_REDUCTION)
-    return found
+    return min(tried, key=lambda each: each.maximum)
