@@ -19,7 +19,7 @@ from bladewright.fitting.assessment.acceptance import Acceptance, MatchTarget
 from bladewright.fitting.assessment.estimates import parameter_estimates
 from bladewright.fitting.assessment.measurement import measured
 from bladewright.fitting.assessment.result import Fit, Motion
-from bladewright.fitting.clouds.cloud import checked_cloud, refuse_several_blades
+from bladewright.fitting.clouds.cloud import checked_cloud, refuse_hidden_blade, refuse_several_blades
 from bladewright.fitting.clouds.thinning import MOST_POINTS, isolated_points
 from bladewright.fitting.clouds.walls import walls_of
 from bladewright.fitting.families.blades import matched_blade
@@ -142,6 +142,7 @@ def fit(
         walls = walls_of(every.points, header.arrangement or getattr(start or like, "arrangement", None))
         refuse_several_blades(every.points[~walls.on_curve])
         shown, hidden = shown_of(every, start, finishing, free_parameters, walls)
+        refuse_hidden_blade(shown.points, len(points))
         return PlacedTask(motion=motion, notes=notes, start=start, every=every, shown=shown, hidden=hidden)
 
     def matched(here: PlacedTask) -> Matched:

@@ -98,6 +98,16 @@ def refuse_several_blades(points: Reals) -> None:
         )
 
 
+def refuse_hidden_blade(shown: Reals, count: int) -> None:
+    """Raise FitError where too few of so many points, `shown` (n, d), lie beside hub, shroud, fillets and cuts."""
+    fewest = FEWEST_POINTS[shown.shape[1]]
+    if len(shown) < fewest:
+        raise FitError(
+            f"{len(shown)} of {count} points lie on the blade's sides, the others on hub, shroud, fillets or cuts: at "
+            f"least {fewest} are needed; give more points of the sides"
+        )
+
+
 def is_one_sided(points: Reals) -> bool:
     """Whether the points are a single sheet: a smooth one passes through the neighbours of most of them."""
     centred = points - np.mean(points, axis=0)

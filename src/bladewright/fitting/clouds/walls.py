@@ -1,8 +1,8 @@
 """Points of hub and shroud beside a blade: a sheet on one curve of the meridional plane that ends the blade.
 
 Sheets are connected patches of neighbouring points, whose plane holds the pitchwise direction (principal components:
-Hoppe et al. 1992). A sheet is a wall where it is wider along the pitch than the blade is thick beside it. Sides are
-not, nor are noses, end faces and rows of points.
+Hoppe et al. 1992). A sheet is a wall where it is wider along the pitch than the blade is thick beside it, and most
+other points stand on no such curve. Sides are not, nor are noses, end faces and rows of points.
 """
 
 from dataclasses import dataclass
@@ -34,9 +34,12 @@ TURN = 0.3
 told (design/matching.md)"""
 FEWEST_SHARE = 0.01
 """share of the points that the smallest wall has, and two patches in any case (design/matching_constants.md)"""
-WIDER = 1.2
-"""width of a wall along the pitch, of the largest thickness beside it: sheets of clouds without walls reach 0.91, walls
-that reach half a chord to each side begin at 1.4 (design/matching.md)"""
+MOST_SHEETS = 0.5
+"""share of the points off a wall that may stand on curves too: a blade fills an area of the meridional plane, but where
+it is seen along its span, as a blade at the side of the axis is while a cascade is tried (design/matching.md)"""
+WIDER = 1.35
+"""width of a wall along the pitch, of the largest thickness beside it: sheets of clouds without walls reach 1.33, walls
+that reach half a chord to each side begin at 1.36 (design/matching.md)"""
 FILLET_PATCH = 8
 """points of a patch of a fillet, which is small (design/matching_constants.md)"""
 AT_WALL, ON_FILLET = 0.65, 0.5
@@ -156,7 +159,9 @@ def _walls(points: Reals, arrangement: Arrangement) -> Walls:
             sheet = _Sheet(points=some.plane[own], tangents=tangents[own])
             width = float(np.median(extents[own, 0]))
             others = ~own & ~sheet.holds(some.plane, 2.0 * width)
-            if _is_wall(sheet, some, own, others, width):
+            # the sides of a blade seen along its span are sheets too, but all of it is
+            fills = np.count_nonzero(others & sheets) < MOST_SHEETS * np.count_nonzero(others)
+            if fills and _is_wall(sheet, some, own, others, width):
                 on_curve |= sheet.holds(every.plane, 2.0 * width)
                 on_fillet |= sheet.tree.query(every.plane)[0] < _fillet_height(sheet, some, points[rows], others, width)
                 places.append(sheet.points)
