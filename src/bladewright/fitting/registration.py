@@ -50,8 +50,8 @@ of the blade's extent, above which their noise does not let them: half and twice
 (design/matching_constants.md)"""
 AMBIGUOUS = 2.0
 """ratio of the mean distances of two motions to closest samples up to which a blade that its own shape is off tells
-neither from the other: of six designs shaken by 3 % a propeller's turned over is nearer than its own, by 0.79, and a
-compressor stator's farther, by 1.37 (design/matching.md)."""
+neither from the other: of six designs shaken by 3 % a propeller's turned over is nearer than its own, by 0.78, and a
+compressor stator's farther, by 1.39 (design/matching.md)."""
 OTHER_BLADE, LEAST_SHARE = 5e-3, 0.7
 """distance, of the chord, within which points are of this blade: as far as a match may be off where no tolerance is
 asked; and share of the points that must be: half and twice change nothing measured (design/matching_constants.md)"""

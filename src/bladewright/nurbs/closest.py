@@ -140,7 +140,7 @@ SAMPLES = {1: (24, 1), 2: (6, 5)}
 search, fewer start at the wrong hump."""
 LEAST_ACROSS = 20
 """Samples across a surface at least, however few its patches: with 5 across a prismatic blade that leans, 7 of 2,200
-points ended at a corner a twentieth of the chord off, with 10 none (design/matching.md)."""
+points ended at a corner a twentieth of the chord off (design/matching.md)."""
 OTHER_SHAPE_RATIO = 4.0
 """Another smooth piece is tried too where its nearest sample is at most this many times as far as the nearest of all:
 with 2 a few of 8,000 points beside a thin edge are found on its wrong side, in as much time

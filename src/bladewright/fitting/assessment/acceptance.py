@@ -38,8 +38,8 @@ from bladewright.fitting.matching.search import Match
 from bladewright.nurbs.basis import Reals
 
 NEAR_EVERYWHERE = 5e-4
-"""largest deviation, of the chord, up to which a match is trusted whatever the noise: 0.05 mm of 100 mm, to which
-blades are milled (design/matching.md)."""
+"""largest deviation, of the chord, up to which a match is trusted whatever the noise: 0.05 mm of 100 mm. A choice:
+searches with nothing asked end within it (design/matching.md)."""
 GROSS_DEVIATION = (1.5e-3, 5e-3)
 """mean and largest deviation, of the chord, beyond which no match is trusted without a tolerance. A mean of 0.15 % on
 both sides of a turbine's throat of 0.3 chords changes it by 1 %; 0.5 % is half the radius of a usual leading edge.

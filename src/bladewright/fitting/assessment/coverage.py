@@ -32,7 +32,7 @@ COVERED_SHARE = 0.5
 with twice a sharp edge is said to have no point (design/matching_constants.md)."""
 BARE_SHARE, BARE_GAPS = 0.1, 5.0
 """gap between points around a section, of the chord, from which a blade is not shown there if it is so many usual ones:
-whole clouds have 0.025 at most, or 2.9 usual gaps, a tenth of one side left out 0.12 and 13 (design/matching.md)"""
+whole clouds have 0.024 at most, or 2.9 usual gaps, a tenth of one side left out 0.12 and 13 (design/matching.md)"""
 FREE_GAP = 0.1
 """share of such a gap within which no point of other parts of the span may lie beside its middle, as rows of points run
 across the blade's lines: of APU's rows 0.036 at most, 0.18 where its corner stood out (design/matching.md)"""

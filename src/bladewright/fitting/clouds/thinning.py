@@ -10,8 +10,8 @@ MOST_POINTS = 20_000
 """points, drawn at random, that stand for a cloud of any size where all would take too long (design/matching.md)"""
 NEIGHBOURS, FEWEST_KNOWING = 16, 3
 """nearest neighbours of a point, and the most points that have an isolated one among theirs: of 3 % of outliers
-that are strewn over a twentieth of the extent half to nine tenths are isolated, and at most 3 of 5,000 good points
-(design/matching.md)"""
+that are strewn over a twentieth of the extent 86 to 100 % of those 5 % of the chord off are isolated, and at most 3 of
+5,000 good points (design/matching.md)"""
 ROUNDS = 6
 """times that isolated points are sought among the rest (design/matching_constants.md)"""
 

@@ -40,7 +40,7 @@ FIRST_BLADE = Structure(
     },
     samples=16,
 )
-"""of a twisted and swept blade, with which a match begins: with three and two control points for angles and tangents a
+"""of a twisted and swept blade, with which a match begins: with fewer for angles and tangents, 58 parameters in all, a
 propeller, whose slices are within 2 deg of its metal angles, was searched away from these to 89 deg
 (design/matching.md)"""
 
@@ -74,10 +74,10 @@ def _determined(own: Structure, law: ResizableLaw, place: int) -> int:
 
 ROWS_PER_KNOT = 3
 """rows of points for each inner knot of a law along the span, where Ruppert 2002 has four: with four Rotor 67, whose
-rows lie in 20 parts of the span, does not pass, with two a propeller is 3.5e-3 of the chord off between its 21 rows
-(design/matching.md)"""
+rows lie in 20 parts of the span, does not pass, with as many knots as rows allow a propeller of 21 rows is 3.5e-3 of
+the chord off between them (design/matching.md)"""
 CHORD_PARTS = 10
-"""parts of each side, along the chord, in each of which rows are counted: with 20 and 40 the rows of six clouds count
+"""parts of each side, along the chord, in each of which rows are counted: with 20 and 40 the rows of five clouds count
 the same within one (design/matching.md)"""
 
 
