@@ -54,7 +54,7 @@ def test_no_point_of_a_blade_alone_is_on_a_wall(name, cloud):
 @pytest.mark.parametrize("angle", [30.0, 60.0, 90.0])
 @pytest.mark.parametrize("cloud", [scattered, in_rows])
 @pytest.mark.parametrize("name", ["booster-stator", "compressor-stator"])
-def test_nor_of_one_that_stands_at_the_side_of_the_axis(name, cloud, angle):
+def test_no_point_of_a_blade_at_the_side_of_the_axis_is_on_a_wall(name, cloud, angle):
     # a cascade is tried too, in which it is seen along its span
     x, y, z = cloud(built(example(name).plain).sides, 2500 if cloud is scattered else 80).T
     cosine, sine = np.cos(np.radians(angle)), np.sin(np.radians(angle))

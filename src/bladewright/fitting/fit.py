@@ -140,9 +140,9 @@ def fit(
             precision=precision,
         )
         walls = walls_of(every.points, header.arrangement or getattr(start or like, "arrangement", None))
-        refuse_several_blades(every.points[~walls.on_curve])
         shown, hidden = shown_of(every, start, finishing, free_parameters, walls)
         refuse_hidden_blade(shown.points, len(points))
+        refuse_several_blades(every.points[~walls.on_curve])
         return PlacedTask(motion=motion, notes=notes, start=start, every=every, shown=shown, hidden=hidden)
 
     def matched(here: PlacedTask) -> Matched:

@@ -99,7 +99,7 @@ def refuse_several_blades(points: Reals) -> None:
 
 
 def refuse_hidden_blade(shown: Reals, count: int) -> None:
-    """Raise FitError where too few of so many points, `shown` (n, d), lie beside hub, shroud, fillets and cuts."""
+    """Raise FitError where of `count` points too few are `shown` (n, d) [m]: off hub, shroud, fillets and cuts."""
     fewest = FEWEST_POINTS[shown.shape[1]]
     if len(shown) < fewest:
         raise FitError(

@@ -36,7 +36,8 @@ FEWEST_SHARE = 0.01
 """share of the points that the smallest wall has, and two patches in any case (design/matching_constants.md)"""
 MOST_SHEETS = 0.5
 """share of the points off a wall that may stand on curves too: a blade fills an area of the meridional plane, but where
-it is seen along its span, as a blade at the side of the axis is while a cascade is tried (design/matching.md)"""
+it is seen along its span, as one at the side of the axis is while a cascade is tried. Beside walls 0.20 do at most, of
+such blades 0.56 at least (design/matching.md)"""
 WIDER = 1.35
 """width of a wall along the pitch, of the largest thickness beside it: sheets of clouds without walls reach 1.33, walls
 that reach half a chord to each side begin at 1.36 (design/matching.md)"""
@@ -159,9 +160,8 @@ def _walls(points: Reals, arrangement: Arrangement) -> Walls:
             sheet = _Sheet(points=some.plane[own], tangents=tangents[own])
             width = float(np.median(extents[own, 0]))
             others = ~own & ~sheet.holds(some.plane, 2.0 * width)
-            # the sides of a blade seen along its span are sheets too, but all of it is
-            fills = np.count_nonzero(others & sheets) < MOST_SHEETS * np.count_nonzero(others)
-            if fills and _is_wall(sheet, some, own, others, width):
+            seen_along_span = np.count_nonzero(others & sheets) > MOST_SHEETS * np.count_nonzero(others)
+            if not seen_along_span and _is_wall(sheet, some, own, others, width):
                 on_curve |= sheet.holds(every.plane, 2.0 * width)
                 on_fillet |= sheet.tree.query(every.plane)[0] < _fillet_height(sheet, some, points[rows], others, width)
                 places.append(sheet.points)
