@@ -140,6 +140,19 @@ def test_noise_is_not_followed_where_nothing_is_asked():
     assert found.rms * found.model.chord < 1.2 * noise
 
 
+def test_no_point_that_a_rich_match_meets_is_an_outlier_of_narrower_ones(monkeypatch):
+    seen = []
+
+    def within(search, rich, _):
+        seen.append((search.task.trusted, rich.rows))
+        return rich, ""
+
+    monkeypatch.setattr(StructureSearch, "within", within)
+    selected_match(task(), BASE, MatchTarget(tolerance=1e-5), like=None, guessed=False)
+    trusted, rows = seen[0]
+    assert np.array_equal(trusted, rows)
+
+
 def test_a_widened_match_comes_nearer_by_a_round():
     narrow = structure_of(MADE)
     for name in THICKNESSES:
