@@ -246,7 +246,7 @@ class MatchProblem(ConstrainedProblem):
         scales: Scales,
         regularisation: Regularisation,
         independent_share: float,
-        hint: Footpoints,
+        begun: PlacedCloud,
         margin: float,
     ) -> None:
         self.cloud_residuals, self.model = cloud_residuals, cloud_residuals.model
@@ -257,10 +257,10 @@ class MatchProblem(ConstrainedProblem):
         self.regularisation = regularisation.scaled(noise)
         self.first = self.values_of(start)
         self.evaluations, self._least = 0, np.inf
-        self._hint = hint
         self.best = np.zeros(len(self.paths))
         """the variables of least cost so far"""
-        self._last: tuple[bytes, PlacedCloud | None] = (b"", None)
+        self._hint = begun.footpoints
+        self._last: tuple[bytes, PlacedCloud | None] = (self.vector(begun.shape.design).tobytes(), begun)
 
     @property
     def bounds(self) -> tuple[Reals, Reals]:

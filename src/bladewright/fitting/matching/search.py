@@ -312,6 +312,7 @@ def evaluated(task: Task, design: Design, *, noise: float | None, before: Match 
         noise=misfit if noise is None else noise,
         precision=np.ones(len(points)) if task.precision is None else task.precision,
     )
+    begun = PlacedCloud(shape=shape, footpoints=footpoints)
     problem = MatchProblem(
         cloud_residuals=cloud_residuals,
         start=start,
@@ -319,13 +320,13 @@ def evaluated(task: Task, design: Design, *, noise: float | None, before: Match 
         scales=scales,
         regularisation=regularisation.scaled(task.regularisation_factor / float(np.sqrt(share / own))),
         independent_share=share / task.regularisation_factor**2,
-        hint=footpoints,
+        begun=begun,
         margin=EDGE_RADIUS_MARGIN[points.shape[1]] * task.margin_factor,
     )
     return Match(
         design=design,
         problem=problem,
-        state=PlacedCloud(shape=shape, footpoints=footpoints),
+        state=begun,
         noise_estimate=noise_estimate,
         ends=ends,
         damping=FIRST_DAMPING if before is None else before.damping,
