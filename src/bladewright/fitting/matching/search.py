@@ -230,7 +230,7 @@ def is_refused(match: Match) -> bool:
 
 def searched(
     task: Task,
-    start: Design,
+    start: "Design | Match",
     *,
     rounds: int = MOST_ROUNDS,
     noise: float | None = None,
@@ -241,14 +241,14 @@ def searched(
 ) -> Match:
     """The design nearest to the cloud that a search from `start` finds, with the structure of `start`.
 
-    `noise` is the first round's, of the chord; None takes the misfit of the start. `min_reduction` is the relative
-    reduction of the cost that a step must predict. The search ends after a round that is `enough`, or that leaves more
-    than the share `settled` of the misfit.
+    `start` is a design, or a match that is evaluated for the task and the first round's noise. That is `noise`, of the
+    chord; None takes the misfit of the start. `min_reduction` is the relative reduction of the cost that a step must
+    predict. The search ends after a round that is `enough`, or that leaves more than the share `settled` of the misfit.
     As long as the misfit is systematic, the regularisation does not rise, and falls where it is `fading`.
     Raises FitError where the start has no shape, and KeyboardInterrupt after it has noted the best design of a round
     that was interrupted.
     """
-    found, rounds_without_gain = evaluated(task, start, noise=noise), 0
+    found, rounds_without_gain = start if isinstance(start, Match) else evaluated(task, start, noise=noise), 0
     task.best_so_far.note(found)
     for number in range(rounds):
         before = found.misfit

@@ -304,7 +304,7 @@ class StructureSearch:
         quick = partial(searched, rounds=QUICK_ROUNDS, min_reduction=ROUGH_REDUCTION)
         with suppress(FitError, DesignError):
             start = self._start(model, prediction)
-            return start and quick(self.task, start.design, noise=prediction.rms)
+            return start and quick(self.task, start, noise=prediction.rms)
         return None
 
     def _start(self, model: LinearModel, prediction: Prediction) -> Match | None:
