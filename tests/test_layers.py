@@ -22,12 +22,13 @@ HEAVY = ("OCP", "cadquery", "gmsh", "matplotlib", "numba", "pydantic", "scipy")
 SOURCES = sorted(PACKAGE.rglob("*.py"))
 
 
-def loaded_by(statement: str) -> set[str]:
-    """Top-level names of the modules in a fresh interpreter that has run the statement."""
-    program = f"import sys\n{statement}\nprint(*sorted({{name.partition('.')[0] for name in sys.modules}}))"
+def loaded_by(*statements: str) -> list[set[str]]:
+    """Top-level names of the modules in a fresh interpreter after each of the statements."""
+    told = "print(*sorted({name.partition('.')[0] for name in sys.modules}))"
+    program = "\n".join(["import sys", *(line for each in statements for line in (each, told))])
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False, timeout=120)
     assert run.returncode == 0, run.stderr
-    return set(run.stdout.split())
+    return [set(line.split()) for line in run.stdout.splitlines()]
 
 
 def module_name(source: Path) -> str:
@@ -35,24 +36,25 @@ def module_name(source: Path) -> str:
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
-def test_importing_the_package_loads_no_heavy_library() -> None:
-    assert not loaded_by("import bladewright").intersection(HEAVY)
+def test_neither_package_nor_command_line_loads_a_heavy_library_when_imported_and_openmdao_s_room_no_kernel() -> None:
+    package, line, openmdao = loaded_by(
+        "import bladewright", "import bladewright.cli", "import bladewright.studies.openmdao"
+    )
+    assert not package.intersection(HEAVY)
+    assert not line.intersection({"OCP", "cadquery", "gmsh", "matplotlib"})
+    assert not openmdao.intersection({"OCP", "cadquery", "gmsh"})
 
 
-def test_no_room_but_cad_and_the_command_line_loads_opencascade_and_none_loads_gmsh() -> None:
-    rooms = [name for name in map(module_name, SOURCES) if name.split(".")[1:2] not in (["cad"], ["cli"], ["__main__"])]
-    assert not loaded_by(f"import {', '.join(rooms)}").intersection({"OCP", "cadquery", "gmsh"})
-
-
-def test_no_room_loads_an_extra_before_it_is_asked_for() -> None:
-    rooms = [name for name in map(module_name, SOURCES) if name.split(".")[1:2] != ["__main__"]]
+def test_no_room_but_cad_and_the_command_line_loads_opencascade_and_none_an_extra_before_it_is_asked_for() -> None:
     # OpenMDAO's component is a class of its library, and stands in a module of its own
-    rooms.remove("bladewright.studies.openmdao")
-    assert not loaded_by(f"import {', '.join(rooms)}").intersection(EXTRAS)
-
-
-def test_the_command_line_starts_without_opencascade() -> None:
-    assert not loaded_by("import bladewright.cli").intersection({"OCP", "cadquery", "gmsh", "matplotlib"})
+    own = ("bladewright.__main__", "bladewright.studies.openmdao")
+    rooms = [name for name in map(module_name, SOURCES) if name not in own]
+    kernel = [name for name in rooms if name.split(".")[1:2] in (["cad"], ["cli"])]
+    others = [name for name in rooms if name not in kernel]
+    first, every = loaded_by(f"import {', '.join(others)}", f"import {', '.join(kernel)}")
+    assert not first.intersection({"OCP", "cadquery", "gmsh"})
+    assert "OCP" in every
+    assert not every.intersection(EXTRAS)
 
 
 def test_every_public_name_is_there() -> None:

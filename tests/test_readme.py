@@ -23,8 +23,9 @@ from bladewright.files.reading import design_from
 ROOT = Path(__file__).parents[1]
 README = ROOT / "README.md"
 PAGES = sorted((ROOT / "docs").glob("*.md"))
-LONG = ("derivatives", "passage-and-mesh", "wheels")
-"""pages whose Python takes seconds: a whole Jacobian, a passage and its mesh"""
+LONG = ("derivatives", "passage-and-mesh", "wheels", "notebooks", "build", "verify")
+"""pages whose Python takes seconds: a whole Jacobian, a passage and its mesh, results in a notebook, files and
+their round trips"""
 TEXTS = [*sorted(ROOT.glob("*.md")), *PAGES, *sorted(ROOT.glob("*/README.md")), *sorted((ROOT / "design").glob("*.md"))]
 COMPLETED_BY = {"hub_fillet": "marine-propeller", "cut": "pump-impeller", "disc": "pump-impeller"}
 """the example whose file a table on a page is put into, by the table"""

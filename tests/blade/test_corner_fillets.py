@@ -139,7 +139,7 @@ def test_passage_and_wheel_stand_around_filleted_corners():
         assert closed.valid
 
 
-@pytest.mark.parametrize("kind", ["ellipse", "curvature"])
+@pytest.mark.parametrize("kind", ["ellipse", pytest.param("curvature", marks=pytest.mark.slow)])
 def test_the_other_kinds_go_around_corners_too(kind):
     radius = SHARE * SHARP.build().chord / SHARP.metre
     sizes = {"on_blade": 1.5 * radius, "on_wall": radius} if kind == "ellipse" else {"radius": radius}

@@ -28,7 +28,10 @@ CLEARED = {
 }
 
 
-@pytest.fixture(params=list(CLEARED))
+SLOW = ("suction and pressure side", "developable")
+
+
+@pytest.fixture(params=[pytest.param(name, marks=[pytest.mark.slow] if name in SLOW else []) for name in CLEARED])
 def cleared(request):
     return coarse(request.param)
 
@@ -186,7 +189,14 @@ DIFFERENTIATED = {
 }
 
 
-@pytest.mark.parametrize(("name", "path"), [(name, path) for name in DIFFERENTIATED for path in DIFFERENTIATED[name]])
+@pytest.mark.parametrize(
+    ("name", "path"),
+    [
+        pytest.param(name, path, marks=[pytest.mark.slow] if name == "ruled" else [])
+        for name in DIFFERENTIATED
+        for path in DIFFERENTIATED[name]
+    ],
+)
 def test_the_complex_step_is_the_derivative_at_held_knots(name, path):
     design = CLEARED[name].changed("tolerance", COARSE)
     knots, value = built(design).knots, design.parameters()[path]

@@ -198,7 +198,9 @@ DERIVED = {
 }
 
 
-@pytest.mark.parametrize("name", list(DERIVED))
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] if name == "an edge" else []) for name in DERIVED]
+)
 def test_derivatives_are_those_of_differences(name):
     design, cuts, free = DERIVED[name]
     design = cut(design, **cuts)

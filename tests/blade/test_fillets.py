@@ -245,7 +245,7 @@ def test_derivatives_are_those_of_differences():
         assert np.max(np.abs(found - slope)) < 1e-7 * np.max(np.abs(slope)), path
 
 
-@pytest.mark.parametrize("design", [ROTOR, CLEARED], ids=lambda each: each.name)
+@pytest.mark.parametrize("design", [pytest.param(ROTOR, marks=pytest.mark.slow), CLEARED], ids=lambda each: each.name)
 def test_a_refusal_names_the_largest_radius_that_holds(design):
     wall = next(name for name in design.ends if name != "tip")
     asked = design.changed(f"{wall}_fillet", Fillet(radius=radius_of(design, 0.5)))
@@ -321,7 +321,7 @@ def test_a_random_fillet_is_refused_for_what_stops_it(seed, says):
         random_parts.random_design(seed).build()
 
 
-@pytest.mark.parametrize(("seed", "jumps"), [(169, "shroud"), (153, "upper side")])
+@pytest.mark.parametrize(("seed", "jumps"), [(169, "shroud"), pytest.param(153, "upper side", marks=pytest.mark.slow)])
 def test_a_fillet_that_takes_on_a_curvature_that_jumps_is_refused_and_the_cure_holds(seed, jumps):
     design = random_parts.random_design(seed)
     with pytest.raises(bw.DesignError, match=f"the curvature of the {jumps} jumps.*take kind = .radius."):
@@ -329,7 +329,7 @@ def test_a_fillet_that_takes_on_a_curvature_that_jumps_is_refused_and_the_cure_h
     assert design.changed("shroud_fillet.kind", "radius").build().properties.volume > 0.0
 
 
-@pytest.mark.parametrize(("seed", "poles"), [(249, 270), (372, 180)])
+@pytest.mark.parametrize(("seed", "poles"), [pytest.param(249, 270, marks=pytest.mark.slow), (372, 180)])
 def test_knots_stand_where_contacts_cross_joints_of_walls_and_curvatures_bend_at_edges(seed, poles):
     """More than 300 control points were asked for."""
     fillet = random_parts.random_design(seed).build().surfaces["hub_fillet_upper"]

@@ -32,7 +32,7 @@ def test_a_blade_from_sections_keeps_its_promises(name):
     assert blade.error < 1e-6
 
 
-@pytest.mark.parametrize("name", ["compressor-rotor", "impeller", "diffuser"])
+@pytest.mark.parametrize("name", ["compressor-rotor", pytest.param("impeller", marks=pytest.mark.slow), "diffuser"])
 def test_its_solid_comes_back_from_a_step_file_with_few_faces_and_small(name, tmp_path):
     blade = blade_of(name)
     trip = cad.write(blade, tmp_path / "blade.step", samples=900)

@@ -13,7 +13,7 @@ from bladewright.files.templates import template_text
 
 @pytest.fixture(scope="module")
 def propeller():
-    return changed_design(parsed(template_text("propeller"), "propeller.toml"), "propeller.toml", {"tolerance": 1e-5})
+    return changed_design(parsed(template_text("propeller"), "propeller.toml"), "propeller.toml", {"tolerance": 1e-4})
 
 
 def test_the_corner_of_a_four_digit_profile_is_that_of_its_mean_lines_jump(propeller):

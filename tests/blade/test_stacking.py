@@ -179,7 +179,11 @@ def test_every_new_parameter_has_an_effect_and_the_derivative_of_differences(des
     assert np.max(np.abs((ahead - back) / 2.0 - found) / scale) < 1e-6
 
 
-@pytest.mark.parametrize("design", [stacked.AXIAL, stacked.RETURN, stacked.RULED], ids=lambda d: d.name)
+@pytest.mark.parametrize(
+    "design",
+    [pytest.param(stacked.AXIAL, marks=pytest.mark.slow), stacked.RETURN, stacked.RULED],
+    ids=lambda d: d.name,
+)
 def test_stacked_and_ruled_solids_come_back_from_step_files(design, tmp_path):
     blade = built(design)
     assert blade.conformance.kept, blade.conformance

@@ -146,12 +146,12 @@ def quantities(blade):
     [
         (CLEARED, "channel.hub[0].r", 0.02),
         (CASCADE, "stagger[0]", 0.02),
-        (CASCADE, "pitch", 0.02),
+        pytest.param(CASCADE, "pitch", 0.02, marks=pytest.mark.slow),
         (BLADES[COMPRESSOR.name], "section.metal_angle_out[1]", 0.02),
         pytest.param(BLADES[COMPRESSOR.name], "section.thickness.maximum_thickness[1]", 1e-4, marks=pytest.mark.slow),
         (BLADES[BLUNT.name], "leading_edge.points[1].x", 0.02),
         pytest.param(BLADES[stacked.RULED.name], "section.camber_angle[1][0]", 0.02, marks=pytest.mark.slow),
-        (BLADES[stacked.MILLED.name], "section.stagger_angle", 0.02),
+        pytest.param(BLADES[stacked.MILLED.name], "section.stagger_angle", 0.02, marks=pytest.mark.slow),
     ],
     ids=["wall", "stagger", "pitch", "metal angle", "thickness", "edge", "ruled", "developable"],
 )

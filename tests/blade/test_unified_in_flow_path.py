@@ -108,10 +108,10 @@ def test_a_nose_may_stand_past_the_end_of_the_flow_path():
 
 PARAMETERS = [
     (FAN_IN_PATH, "flow_path.hub.points[2].r"),
-    (FAN_IN_PATH, "channel.leading_edge[3].x"),
+    pytest.param(FAN_IN_PATH, "channel.leading_edge[3].x", marks=pytest.mark.slow),
     (IMPELLER_IN_PATH, "flow_path.shroud.control_points[3].x"),
-    (IMPELLER_IN_PATH, "channel.trailing_edge[0].r"),
-    (INFLOW_IN_PATH, "flow_path.shroud.radii[0]"),
+    pytest.param(IMPELLER_IN_PATH, "channel.trailing_edge[0].r", marks=pytest.mark.slow),
+    pytest.param(INFLOW_IN_PATH, "flow_path.shroud.radii[0]", marks=pytest.mark.slow),
     (INFLOW_IN_PATH.changed("tip_clearance", 0.4), "flow_path.shroud.corners[1].r"),
 ]
 

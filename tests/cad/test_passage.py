@@ -117,8 +117,11 @@ def test_a_wall_torn_off_the_extension_is_refused(vane):
 @pytest.mark.parametrize(
     ("kind", "ending"),
     [
-        *[("whole", ending) for ending in ("step", "igs", "brep")],
-        *[("gap", "step"), ("split", "igs"), ("split gap", "step")],
+        *[("whole", "step"), ("split", "igs"), ("split gap", "step")],
+        *[
+            pytest.param(*each, marks=pytest.mark.slow)
+            for each in (("whole", "igs"), ("whole", "brep"), ("gap", "step"))
+        ],
     ],
 )
 def test_a_passage_returns_from_a_file_with_every_face_named(passages, kind, ending, tmp_path):

@@ -85,7 +85,7 @@ def test_a_wheel_becomes_one_closed_valid_solid_of_its_own_faces(wheel, plain):
     ("kind", "ending"),
     [
         ("wheel", "step"),
-        ("wheel", "igs"),
+        pytest.param("wheel", "igs", marks=pytest.mark.slow),
         ("plain", "brep"),
         *(pytest.param(*each, marks=pytest.mark.slow) for each in (("wheel", "brep"), ("plain", "step"))),
     ],
@@ -145,6 +145,7 @@ def test_a_wheel_may_be_split(wheel):
     assert len(body.surfaces) == len(wheel.surfaces) + 3
 
 
+@pytest.mark.slow
 def test_a_moved_pole_of_a_wheel_is_found(wheel, tmp_path):
     bent = replaced(wheel, blade_01_upper=moved(wheel.surfaces["blade_01_upper"], 10, 10, 1e-7))
     written(bent, tmp_path / "bent.step")

@@ -14,7 +14,7 @@ from bladewright.domain.wheel import wheel
 from machines import coarse
 
 WEB = ((-8.0, 94.0), (-8.0, 60.0), (97.0, 60.0), (97.0, 118.5))
-SAMPLES = 300
+SAMPLES = 100
 
 
 ROTOR = replace(coarse.ROTOR, blade_count=2, disc=Disc(outline=Outline(points=WEB, radii=(5.0, 0.0))))
@@ -26,6 +26,7 @@ ROTOR = replace(coarse.ROTOR, blade_count=2, disc=Disc(outline=Outline(points=WE
         pytest.param(lambda: sector(ROTOR.build()), id="sector"),
         pytest.param(
             lambda: wheel(replace(ROTOR, hub_fillet=Fillet(radius=2.0), shroud_ring=Disc(thickness=2.0)).build()),
+            marks=pytest.mark.slow,
             id="filleted wheel with a ring",
         ),
     ],

@@ -19,7 +19,7 @@ def few_samples():
 
     with pytest.MonkeyPatch.context() as patch:
         for door in (cad.write, cad.verify):
-            patch.setitem(door.__kwdefaults__, "samples", 400)
+            patch.setitem(door.__kwdefaults__, "samples", 100)
         yield
 
 

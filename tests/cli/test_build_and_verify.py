@@ -134,6 +134,7 @@ def test_an_error_in_the_second_format_leaves_nothing_of_the_first(run, vane_fil
 def test_a_section_becomes_a_prismatic_blade_of_its_span(run, tmp_path):
     section = (Path(__file__).parent / "vane.toml").read_text().partition("[channel]")[0]
     section = section.replace('"unified"', '"unified-section"').replace('arrangement = "linear"', "axial_chord = 40")
+    section = section.replace("tolerance = 1e-4", "")
     path = tmp_path / "section.toml"
     path.write_text(section)
     found = run("build", path, "-o", tmp_path / "out")
@@ -177,11 +178,13 @@ def test_a_cad_file_that_is_missing_or_a_directory_is_refused(run, vane_file, tm
         assert "fault of bladewright" not in found.err
 
 
-def test_several_designs_are_made_side_by_side_though_one_is_refused(run, vane_file, tmp_path):
+@pytest.mark.parametrize("jobs", [1, pytest.param(2, marks=pytest.mark.slow)])
+def test_several_designs_are_made_by_so_many_processes_though_one_is_refused(jobs, run, vane_file, tmp_path):
     text, other, broken = vane_file.read_text(), tmp_path / "other.toml", tmp_path / "broken.toml"
     other.write_text(text.replace('name = "vane"', 'name = "other"'))
     broken.write_text('family = "unified"\nname = "broken"\n')
-    asked = run("build", vane_file, broken, other, "--as", "step", "-o", tmp_path / "made", "--json")
+    words = ("--as", "step", "-o", tmp_path / "made", "--jobs", jobs, "--json")
+    asked = run("build", vane_file, broken, other, *words)
     assert asked.status == 2
     assert [each["name"] for each in asked.json["designs"]] == ["vane", "other"]
     assert asked.json["passed"] is False

@@ -42,6 +42,7 @@ def test_a_sector_and_a_wheel_have_their_files_and_a_wheel_is_all_sectors(made):
     assert "blade_03_upper" in [face["name"] for face in wheel["faces"]]
 
 
+@pytest.mark.slow
 def test_a_file_tells_which_body_it_holds(made, run, propeller):
     found = run("verify", made / "propeller-sector.step", propeller, *DISC, "--json")
     assert (found.status, found.json["body"]) == (0, "sector")

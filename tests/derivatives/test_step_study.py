@@ -43,7 +43,9 @@ def swept(name, quantity, **options):
     return list(step_studies(design, base, named_quantity(base, quantity), space, **options))
 
 
-@pytest.mark.parametrize("name", BLADES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] if name == "marine-propeller" else []) for name in BLADES]
+)
 def test_every_parameter_of_every_blade_has_the_derivative_that_differences_give(name):
     design, base = coarse(name)
     values, space = design.parameters(), bw.variables(design, knots=base.knots)

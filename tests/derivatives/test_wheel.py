@@ -10,7 +10,7 @@ from bladewright.blade.design.disc import Disc, Outline
 from machines.coarse import ROTOR
 
 OUTLINE = Outline(points=((-8.0, 94.0), (-8.0, 30.0), (97.0, 30.0), (97.0, 118.5)), radii=(5.0, 4.0))
-DESIGN = replace(ROTOR, density=4430.0, disc=Disc(outline=OUTLINE))
+DESIGN = replace(ROTOR, blade_count=5, density=4430.0, disc=Disc(outline=OUTLINE))
 STEPS = {
     "density": 1.0,
     "stagger[1]": 1e-3,

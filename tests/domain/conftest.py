@@ -5,7 +5,10 @@ import pytest
 from machines.passages import UNIFIED, passage_case
 
 
-@pytest.fixture(scope="session", params=list(UNIFIED))
+@pytest.fixture(
+    scope="session",
+    params=[pytest.param(name, marks=[pytest.mark.slow] if name == "cantilevered stator" else []) for name in UNIFIED],
+)
 def case(request):
     return passage_case(request.param)
 

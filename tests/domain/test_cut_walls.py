@@ -21,7 +21,9 @@ CUT = {
 }
 
 
-@pytest.mark.parametrize("name", list(CUT))
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] if name == "a tip with its clearance" else []) for name in CUT]
+)
 def test_passage_and_blade_fill_the_ring_between_cuts(name):
     design = CUT[name]
     passage = bw.passage(built(design))

@@ -23,7 +23,14 @@ def volume_and_poles(case, design):
     return np.concatenate(poles)
 
 
-@pytest.mark.parametrize(("name", "path"), [(name, path) for name, paths in PARAMETERS.items() for path in paths])
+@pytest.mark.parametrize(
+    ("name", "path"),
+    [
+        pytest.param(name, path, marks=[pytest.mark.slow] if name == "rotor" else [])
+        for name, paths in PARAMETERS.items()
+        for path in paths
+    ],
+)
 def test_volume_and_poles_follow_the_parameters(name, path):
     case = passage_case(name)
     design = case.blade.design

@@ -129,7 +129,11 @@ def test_the_walls_line_straightens_before_it_winds_a_turn(shrouded):
 
 
 @pytest.mark.parametrize(
-    "part", [Disc(thickness=0.2, upstream=2000), outlined((-2000, 79), (-2000, 9), (97, 9), (97, 118.5))]
+    "part",
+    [
+        Disc(thickness=0.2, upstream=2000),
+        pytest.param(outlined((-2000, 79), (-2000, 9), (97, 9), (97, 118.5)), marks=pytest.mark.slow),
+    ],
 )
 def test_a_disc_that_reaches_further_than_its_wall_is_named_with_how_far_that_goes(part, rotor):
     name = "upstream" if part.outline is None else r"outline.points\[0\]"
@@ -192,7 +196,9 @@ def test_the_edges_of_a_cyclic_face_are_its_own_control_points_to_the_bit(bodies
         assert own[first : first + len(edge.control_points)] == list(map(tuple, edge.control_points))
 
 
-@pytest.mark.parametrize("fillet", [None, Fillet(radius=1.5)], ids=["plain", "filleted"])
+@pytest.mark.parametrize(
+    "fillet", [pytest.param(None, marks=pytest.mark.slow), Fillet(radius=1.5)], ids=["plain", "filleted"]
+)
 def test_passage_and_sector_fill_the_annulus_between_bore_and_shroud(fillet):
     blade = with_parts(coarse.ROTOR, hub_fillet=fillet)
     around = passage(blade)

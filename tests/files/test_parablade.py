@@ -129,7 +129,10 @@ def test_the_blade_that_is_matched_is_the_one_of_the_recipe(name):
         assert shape.points(side_basis(s) @ controls) == pytest.approx(witness.rows(v, around[side]), abs=1e-13)
 
 
-@pytest.mark.parametrize("name", [*MADE, *MATCHED])
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=[pytest.mark.slow] if name == "APU_rotor" else []) for name in (*MADE, *MATCHED)],
+)
 def test_the_built_sides_lie_where_the_recipe_puts_them(name, imported_once):
     imported = imported_once(name)
     built, witness = built_once(imported.design), Witness(text_of(name))

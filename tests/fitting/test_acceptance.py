@@ -10,9 +10,10 @@ from bladewright.fitting.assessment.estimates import parameter_estimates
 from bladewright.fitting.assessment.measurement import measured
 from bladewright.fitting.free_parameters import free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
-from machines import example
+from machines import COARSE, example
+from machines import built as builds
 
-STATOR = example("aachen-stator")
+STATOR = example("aachen-stator").changed("tolerance", COARSE)
 
 
 def matched(points, design, free="stagger"):
@@ -24,7 +25,7 @@ def matched(points, design, free="stagger"):
 def said_of(points, design, target, free="stagger"):
     """Why a design as it stands does not pass for points."""
     found = matched(points, design, free)
-    return tuple(accepted(found, measured(points, design.build()), target).failures())
+    return tuple(accepted(found, measured(points, builds(design)), target).failures())
 
 
 def accepted(found, measurement, target):
@@ -36,7 +37,7 @@ def accepted(found, measurement, target):
 )
 @pytest.mark.parametrize("target", [MatchTarget(), MatchTarget(structured=True)])
 def test_a_match_is_trusted_where_it_is_nearer_than_half_a_thousandth_of_the_chord_everywhere(miss, said, target):
-    built = STATOR.build()
+    built = builds(STATOR)
     u, v = (
         each.ravel() for each in np.meshgrid((1.0 - np.cos(np.pi * np.linspace(0, 1, 40))) / 2, np.linspace(0, 1, 9))
     )
@@ -49,7 +50,7 @@ def test_a_match_is_trusted_where_it_is_nearer_than_half_a_thousandth_of_the_cho
 
 @pytest.mark.parametrize(("noise", "passed"), [(0.0, False), (4e-4, True)])
 def test_deviations_that_are_the_clouds_own_noise_do_not_make_a_match_coarse(noise, passed):
-    built, random = STATOR.build(), np.random.default_rng(8)
+    built, random = builds(STATOR), np.random.default_rng(8)
     points = np.concatenate([np.real(side(*random.random((2, 400)))) for side in built.sides])
     points[:, 1] += 0.0 if noise else 1.0e-3 * built.chord * np.sin(8.0 * points[:, 0] / built.chord)
     points += noise * built.chord * random.normal(size=points.shape)
@@ -59,8 +60,8 @@ def test_deviations_that_are_the_clouds_own_noise_do_not_make_a_match_coarse(noi
 
 @pytest.mark.parametrize(("together", "off", "said"), [(True, 1e-3, True), (True, 4e-4, False), (False, 1e-3, False)])
 def test_outliers_beside_each_other_are_a_shape_that_is_not_found_unless_they_are_near(together, off, said):
-    built, draw = STATOR.build(), np.random.default_rng(8)
-    u, v = draw.random((2, 1500))
+    built, draw = builds(STATOR), np.random.default_rng(8)
+    u, v = draw.random((2, 1000))
     points = np.concatenate([np.real(side(u, v)) for side in built.sides])
     found, measurement = matched(points, STATOR), measured(points, built)
     number = int(0.08 * len(points))
@@ -76,7 +77,7 @@ def test_outliers_beside_each_other_are_a_shape_that_is_not_found_unless_they_ar
 
 @pytest.mark.parametrize("inside", [True, False])
 def test_outliers_that_all_lie_inside_the_blade_are_a_shape_that_is_not_found(inside):
-    built, draw = STATOR.build(), np.random.default_rng(8)
+    built, draw = builds(STATOR), np.random.default_rng(8)
     places = draw.random((2, 2, 800))
     points = np.concatenate([np.real(side(*place)) for side, place in zip(built.sides, places, strict=True)])
     at, normals = (getattr(measured(points, built).footpoints, name) for name in ("points", "normals"))
@@ -88,12 +89,12 @@ def test_outliers_that_all_lie_inside_the_blade_are_a_shape_that_is_not_found(in
 
 
 def test_points_of_a_solid_on_its_end_faces_are_said_to_be_there():
-    built = STATOR.build()
+    built = builds(STATOR)
     random = np.random.default_rng(4)
-    u, v, across = random.random((3, 1200))
+    u, v, across = random.random((3, 600))
     sides = np.concatenate([np.real(side(u, v)) for side in built.sides])
-    upper, lower = (np.real(side(0.1 + 0.8 * u[:400], np.round(v[:400]))) for side in built.sides)
-    face = upper + across[:400, None] * (lower - upper)
+    upper, lower = (np.real(side(0.1 + 0.8 * u[:200], np.round(v[:200]))) for side in built.sides)
+    face = upper + across[:200, None] * (lower - upper)
     stray = np.mean(sides, axis=0) + 0.5 * np.ptp(sides, axis=0)
     points = np.concatenate([sides, face, stray[None]])
     at = measured(points, built)
@@ -125,9 +126,9 @@ def test_a_blade_that_is_laid_through_one_side_is_called_a_sheet(share, sheet):
     assert any("the blade is a sheet" in each for each in said) == sheet
 
 
-@pytest.mark.parametrize(("count", "few"), [(10, True), (800, False)])
+@pytest.mark.parametrize(("count", "few"), [(10, True), (400, False)])
 def test_a_blade_of_which_nothing_is_asked_has_no_more_parameters_than_its_points_determine(count, few):
-    built, random = STATOR.build(), np.random.default_rng(6)
+    built, random = builds(STATOR), np.random.default_rng(6)
     points = np.concatenate([np.real(side(*random.random((2, count)))) for side in built.sides])
     said = [" ".join(said_of(points, STATOR, aim, free=None)) for aim in (MatchTarget(), MatchTarget(parameters=30))]
     assert ("the points determine" in said[0]) == few
@@ -148,7 +149,7 @@ def test_a_side_is_shown_by_points_or_by_parameters_that_are_held(gap, free, sai
 
 @pytest.mark.parametrize(("low", "high", "said"), [(0.02, 0.06, "at the leading edge"), (0.3, 0.7, "inside the blade")])
 def test_outliers_inside_are_said_once_and_where_they_crowd(low, high, said):
-    built, draw = STATOR.build(), np.random.default_rng(8)
+    built, draw = builds(STATOR), np.random.default_rng(8)
     points = [np.real(side(*draw.random((2, 1500)))) for side in built.sides]
     for side, other in zip(built.sides, built.sides[::-1], strict=True):
         u, v = draw.uniform(low, high, 12), np.linspace(0.1, 0.9, 12)

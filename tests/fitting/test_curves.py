@@ -50,7 +50,7 @@ def test_the_example_of_the_source_ends_at_its_end_points_and_stays_within_2e_4_
     assert fit.maximum < bw.fit_curve(BENT).maximum
 
 
-@pytest.mark.parametrize("power", [2.0, 4.0])
+@pytest.mark.parametrize("power", [2.0, pytest.param(4.0, marks=pytest.mark.slow)])
 def test_finite_differences_as_in_the_source_find_nothing_lower(power):
     fit = bw.fit_curve(BENT[::4], power=power)
 

@@ -59,7 +59,10 @@ def test_the_likeliest_channel_follows_the_outline_where_outliers_bend_it():
         assert np.max(away) < 0.1 * blade.chord
 
 
-@pytest.mark.parametrize("name", ["compressor-stator", "centrifugal-impeller", "radial-turbine", "fan-rotor"])
+@pytest.mark.parametrize(
+    "name",
+    ["compressor-stator", pytest.param("centrifugal-impeller", marks=pytest.mark.slow), "radial-turbine", "fan-rotor"],
+)
 def test_the_corners_of_a_first_channel_stand_where_those_of_the_blade_do(name):
     count = 4000
     machine, blade = cloud(name, count)

@@ -5,7 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.section import first_section
+from bladewright.fitting.matching.search import ROUGH_REDUCTION, Task, searched
+from bladewright.fitting.model_selection.edges import nearest_from_other_edges
+from bladewright.fitting.model_selection.selection import GUESS_NOISE
 from bladewright.fitting.model_selection.structure import Structure
 from bladewright.nurbs.closest import closest_on_curve
 from bladewright.section.unified import UnifiedSection
@@ -45,17 +49,15 @@ def _share(design: UnifiedSection, points: np.ndarray) -> float:
     return float(np.mean(distances) / built.chord)
 
 
-@pytest.mark.parametrize("count", [120, 1000])
+@pytest.mark.parametrize("count", [120, pytest.param(600, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", TRUTHS)
-def test_a_first_section_lies_within_one_percent_of_the_chord(name: str, count: int) -> None:
-    points = _cloud(TRUTHS[name], count)
-    assert _share(first_section(points), points) < 0.01
-
-
-@pytest.mark.parametrize("name", TRUTHS)
-def test_a_first_section_has_the_angles_and_the_chord_of_the_truth(name: str) -> None:
+def test_a_first_section_lies_within_one_percent_of_the_chord_and_has_the_angles_of_the_truth(
+    name: str, count: int
+) -> None:
     truth = TRUTHS[name]
-    found = first_section(_cloud(truth, 800))
+    points = _cloud(truth, count)
+    found = first_section(points)
+    assert _share(found, points[:200]) < 0.01
     # the ends of the camber lie somewhere on round edges: within a radius of each other
     assert found.stagger == pytest.approx(truth.stagger, abs=6.0)
     assert found.axial_chord == pytest.approx(truth.axial_chord, rel=0.08)
@@ -86,3 +88,17 @@ def test_a_published_cloud_gives_a_first_section_within_a_fifth_of_a_percent(nam
         pytest.skip(f"{path} is not here")
     points = np.loadtxt(path)[:, 1:]
     assert _share(first_section(points), points) < 0.002
+
+
+def test_a_section_in_another_minimum_is_met_from_usual_edges_where_it_is_not_trusted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    truth = TRUTHS["turbine"]
+    points = _cloud(truth, 200)
+    task = Task(points=points, weights=np.ones(200), free=FreeParameters(), bounds={}, preliminary=True)
+    off = truth.changed({"tangent_in": 0.9, "stagger": truth.stagger + 8.0})
+    plain = searched(task, off, noise=GUESS_NOISE, min_reduction=ROUGH_REDUCTION)
+    assert nearest_from_other_edges(task, plain, GUESS_NOISE) is plain
+    monkeypatch.setattr("bladewright.fitting.model_selection.edges.GROSS_DEVIATION", (0.0, 0.0))
+    nearer = nearest_from_other_edges(task, plain, GUESS_NOISE)
+    assert nearer.mean_distance < 1e-3 * plain.mean_distance

@@ -15,7 +15,7 @@ RANDOM = np.random.default_rng(7)
 def cloud(design):
     """Points of a section, a tenth of them at its trailing edge."""
     curves = design.build().curves
-    counts = {"upper": 200, "lower": 200, "trailing_edge": 8}
+    counts = {"upper": 100, "lower": 100, "trailing_edge": 8}
     ends = [curves[side](1.0 - 0.01 * RANDOM.random(10)) for side in ("upper", "lower")]
     return np.concatenate([np.real(curve(RANDOM.random(counts[side]))) for side, curve in curves.items()] + ends)
 
@@ -24,7 +24,7 @@ def test_a_blunt_edge_is_said_with_its_width():
     design = EXAMPLES["naca-6409-blunt"].design
     face = design.build().curves["trailing_edge"]
     width = 1e3 * float(np.sqrt(np.sum((face(1.0) - face(0.0)) ** 2)))
-    found = bw.fit(cloud(design), parameters=30)
+    found = bw.fit(cloud(design), parameters=24)
     said = [note for note in found.notes if "is cut off" in note]
     assert len(said) == 1
     assert said[0].startswith(f"the trailing edge of the points is cut off, {width:.2g} mm wide")

@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from bladewright.blade.exact.cut_sectioned import exact_blade_of_sections
 from bladewright.errors import DesignError
 from bladewright.fitting.clouds.cloud import checked_cloud
 from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footpoints
@@ -114,8 +115,8 @@ def test_what_a_flow_path_refuses_changes_as_central_differences_say(matched):
     found = []
     for path in names:
         ends = [
-            np.real(_flow_path_margins(shape.exact, model.shape(design.changed(path, values[path] + step)).exact))
-            for step in (1e-4, -1e-4)
+            np.real(_flow_path_margins(shape.exact, exact_blade_of_sections(moved, model.knots, checked=False)))
+            for moved in (design.changed(path, values[path] + step) for step in (1e-4, -1e-4))
         ]
         found.append((ends[0] - ends[1]) / 2e-4)
     np.testing.assert_allclose(np.array(found) / scaled(exact), exact / scaled(exact), atol=3e-6)
@@ -128,7 +129,7 @@ def test_the_margins_of_a_flow_path_are_spent_before_it_is_refused():
     model = model_of(design)
     for path, ahead in (("flow_path.shroud.points[5].x", 10.0), ("leading_edge.control_points[0].r", 10.0)):
         value, least = design.parameters()[path], 0.0
-        for share in np.linspace(0.0, 1.0, 201):
+        for share in np.linspace(0.3, 1.0, 29):
             try:
                 shape = model.shape(design.changed(path, value + share * ahead))
             except DesignError:

@@ -121,7 +121,7 @@ def test_segments_with_more_control_points_that_hold_the_old_ones_are_the_same_s
     assert np.max(tree.query(before[0])[0]) < 1e-4
 
 
-def task(design, count=150):
+def task(design, count=120):
     random = np.random.default_rng(4)
     points = np.concatenate([side(random.random(count)) for side in design.build().curves.values()])
     return Task(points=points, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
@@ -188,7 +188,7 @@ def test_a_section_on_too_short_a_tangent_is_crowded_before_it_is_refused():
     assert np.max(np.real(infeasibility(STATOR, ALONE))) < 0.0
     reach = 0.1
     while np.max(np.real(infeasibility(replace(STATOR, pressure_tangent_in=reach), ALONE))) <= 0.0:
-        reach *= 0.998
+        reach *= 0.99
     # crowding begins while the section can still be made
     assert replace(STATOR, pressure_tangent_in=reach).outline(ALONE).points(PLACES)[0].shape == (1, 33, 2)
 

@@ -23,7 +23,7 @@ AWAY = Motion(rotation=np.array([[-0.6, -0.8], [0.8, -0.6]]), translation=np.arr
 
 
 def moved_cloud():
-    return AWAY(np.concatenate([curve(np.linspace(0.0, 1.0, 150)) for curve in built(TRUTH).curves.values()]))
+    return AWAY(np.concatenate([curve(np.linspace(0.0, 1.0, 80)) for curve in built(TRUTH).curves.values()]))
 
 
 def start_beside():

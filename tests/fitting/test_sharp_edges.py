@@ -13,7 +13,7 @@ CHORD = 0.08
 def test_the_tip_of_a_wedge_is_met_beyond_its_last_points():
     part = Naca4(thickness=0.12, camber=0.02, camber_position=0.4)
     curves = ProfileSection(name="wedge", length_unit="m", chord=CHORD, section=part).build().curves
-    u = (np.arange(250) + 0.5) / 250
+    u = (np.arange(120) + 0.5) / 120
     cloud = np.concatenate([np.real(curve(u)) for curve in (curves["upper"], curves["lower"])])
     tip = np.real(curves["upper"](np.ones(1)))
     gap = np.min(np.hypot(*(cloud - tip).T))

@@ -11,12 +11,12 @@ from . import COARSE, built, example
 from .sectioned import PLATE
 
 UNIFIED = {
-    "rotor": ("nasa-rotor-67", {}, {}),
+    "rotor": ("nasa-rotor-67", {"tolerance": COARSE}, {}),
     "shrouded fan with a gap": ("fan-rotor", {"tip_clearance": (0.4, 0.6), "hub_clearance": None}, {}),
     "impeller with a gap": ("centrifugal-impeller", {"tip_clearance": (0.3, 0.2), "hub_clearance": None}, {}),
-    "inflow turbine": ("radial-turbine", {"tip_clearance": None}, {"downstream": 0.8}),
-    "propeller": ("propeller", {"tip_clearance": None}, {"outlet_angle": -30.0}),
-    "cascade": ("vki-ls89", {}, {"upstream": 0.7, "outlet_angle": -60.0}),
+    "inflow turbine": ("radial-turbine", {"tip_clearance": None, "tolerance": COARSE}, {"downstream": 0.8}),
+    "propeller": ("propeller", {"tip_clearance": None, "tolerance": COARSE}, {"outlet_angle": -30.0}),
+    "cascade": ("vki-ls89", {"tolerance": COARSE}, {"upstream": 0.7, "outlet_angle": -60.0}),
     "cantilevered stator": ("aachen-stator", {"hub_clearance": 0.5}, {"inlet_angle": 5.0}),
 }
 """built-in design, what is changed in it, and what is asked of the passage"""

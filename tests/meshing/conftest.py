@@ -78,7 +78,7 @@ def cascade_as(request, cascade, tmp_path_factory):
     return made
 
 
-@pytest.fixture(params=[".msh", ".su2", ".cgns"])
+@pytest.fixture(params=[".msh", ".su2", pytest.param(".cgns", marks=pytest.mark.slow)])
 def cascade_mesh(request, cascade_as):
     """The cascade's mesh in each format, and its report."""
     return cascade_as(request.param)

@@ -109,6 +109,7 @@ def test_a_rotor_with_a_gap_at_its_tip_passes(rotor, rotor_mesh):
     assert 0.0 < tip.max_deviation_mm <= report.deviation_limit_mm
 
 
+@pytest.mark.slow
 def test_the_same_passage_gives_the_same_mesh_a_thousand_times_as_large_in_millimetres(cascade, cascade_as, tmp_path):
     metres, millimetres = cascade_as(".msh")[0], tmp_path / "mm.msh"
     report = cascade.mesh(millimetres, unit="mm")

@@ -41,7 +41,11 @@ MATCHES = {
 }
 
 
-@pytest.mark.parametrize("match", MATCHES.values(), ids=MATCHES)
+@pytest.mark.parametrize(
+    "match",
+    [pytest.param(match, marks=[pytest.mark.slow] if name == "fit_profile" else []) for name, match in MATCHES.items()],
+    ids=MATCHES,
+)
 def test_matches_have_one_thread(match):
     seen = []
     with threadpool_limits(limits=2, user_api="blas"):

@@ -1,5 +1,6 @@
 """A design of every kind that is drawn, what it builds and the sheet of it."""
 
+from functools import cached_property
 from importlib import import_module
 
 import pytest
@@ -40,7 +41,12 @@ class Drawn:
             # pixels of the view in space are counted in test_files.py alone
             small.setattr(import_module("bladewright.views.picture"), "draw_solid", small_solid)
             self.figure = sheet(self.design, self.built)
+
+    @cached_property
+    def painted(self):
+        """The sheet, with every text and pixel where it is."""
         self.figure.canvas.draw()
+        return self.figure
 
     def panel(self, title):
         return next(axes for axes in self.figure.axes if axes.get_title(loc="left").startswith(title))

@@ -16,6 +16,8 @@ from bladewright.domain.row import Row
 from bladewright.domain.section import section_passage
 from bladewright.domain.sector import Sector
 from bladewright.domain.wheel import Wheel
+from bladewright.studies.optimum import Optimum
+from bladewright.studies.pareto import ParetoSet
 from bladewright.studies.sweep import sweep
 from bladewright.views.html import frame, table
 from bladewright.views.picture import sheet
@@ -56,12 +58,13 @@ def shown(name, request):
 @pytest.mark.parametrize("name", [*SHOWN, "round trip"])
 def test_a_notebook_shows_picture_and_table_and_loads_nothing(name, request):
     result = shown(name, request)
-    page = Page(result._repr_html_())
+    html = result._repr_html_()
+    page = Page(html)
     assert {"img", "table"} <= {tag for tag, _ in page.tags}
     assert page.loaded
     assert all(address.startswith("data:image/") for address in page.loaded)
     assert name.startswith(result.shown_as)
-    assert len(result._repr_html_()) < 400_000
+    assert len(html) < 400_000
 
 
 @pytest.mark.parametrize("name", ["section passage", "round trip"])
@@ -73,7 +76,7 @@ def test_plot_returns_a_figure_that_pyplot_does_not_know_and_a_notebook_shows(na
 
 
 def test_every_kind_of_result_is_shown_and_a_blade_as_the_picture_of_show():
-    direct = Shown.__subclasses__()
+    direct = {Optimum, ParetoSet, *Shown.__subclasses__()}
     kinds = [Row, Sector, Wheel, *direct, *(below for kind in direct for below in kind.__subclasses__())]
     assert {kind.shown_as for kind in kinds if hasattr(kind, "shown_as")} == set(KINDS)
     assert KINDS["blade"].figure is KINDS["passage"].figure is sheet
