@@ -243,7 +243,7 @@ def guessed(name):
         cloud = clouds.measured(name) if name[0].isupper() else clouds.cloud_of(clouds.example(name))
     since = time.process_time()
     try:
-        built = first_blade(cloud.points)[0].build()
+        built = first_blade(cloud.points).design.build()
     except BladewrightError:
         return {"far": None, "status": "refused", "parameters": None, "seconds": time.process_time() - since}
     seconds = time.process_time() - since

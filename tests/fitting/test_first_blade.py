@@ -8,8 +8,14 @@ import pytest
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.blade.native.blade import Blade
 from bladewright.fitting.free_parameters import FreeParameters
-from bladewright.fitting.initial_guess.blade import arranged_channels, first_blade, spans_along_y
-from bladewright.fitting.matching.search import ROUGH_REDUCTION, Task, evaluated, searched
+from bladewright.fitting.initial_guess.blade import (
+    UPRIGHT,
+    arranged_channels,
+    first_blade,
+    likely_arrangements,
+    spans_along_y,
+)
+from bladewright.fitting.matching.search import ROUGH_REDUCTION, Task, about_x, evaluated, searched
 from bladewright.fitting.model_selection.edges import nearest_from_other_edges
 from bladewright.fitting.model_selection.selection import GUESS_NOISE
 from bladewright.nurbs.closest import closest_on_surface
@@ -37,13 +43,13 @@ def _share(design: UnifiedBlade, points: np.ndarray) -> float:
 @pytest.mark.slow
 def test_a_first_blade_lies_within_one_percent_of_the_chord() -> None:
     points = _cloud(_truth("centrifugal-impeller"), 600)
-    assert _share(first_blade(points, arrangement="annular")[0], points) < 0.01
+    assert _share(first_blade(points, arrangement="annular").design, points) < 0.01
 
 
 def test_a_first_blade_has_its_corners_within_one_percent_and_its_angles_and_the_count_and_unit_asked_for() -> None:
     truth = _truth("radial-turbine")
     points, span = _cloud(truth, 1000), Span(np.linspace(0.0, 1.0, 6))
-    found, _ = first_blade(points, arrangement="annular", blade_count=20, length_unit="m")
+    found = first_blade(points, arrangement="annular", blade_count=20, length_unit="m").design
     assert (found.blade_count, found.length_unit) == (20, "m")
     assert _share(found, points) < 0.01
     for edge in ("leading_edge", "trailing_edge"):
@@ -59,7 +65,7 @@ def test_a_first_blade_has_its_corners_within_one_percent_and_its_angles_and_the
 @pytest.mark.slow
 def test_the_search_of_a_first_blade_leaves_the_metal_angles_of_its_slices() -> None:
     truth, span = _truth("propeller"), Span(np.linspace(0.0, 1.0, 6))
-    found, _ = first_blade(_cloud(truth, 1000), arrangement="annular")
+    found = first_blade(_cloud(truth, 1000), arrangement="annular").design
     for name in ("metal_angle_in", "metal_angle_out"):
         there, here = (np.real(span.values(getattr(design, name))) for design in (truth.design, found))
         assert np.max(np.abs(there - here)) < 20.0
@@ -68,11 +74,11 @@ def test_the_search_of_a_first_blade_leaves_the_metal_angles_of_its_slices() -> 
 @pytest.mark.slow
 def test_a_first_blade_is_brought_nearer_from_usual_edges() -> None:
     points = _cloud(_truth("vki-ls89"), 600)
-    start, outline = first_blade(points, arrangement="linear")
+    first = first_blade(points, arrangement="linear")
     task = Task(
-        points=points, weights=np.ones(600), free=FreeParameters(), bounds={}, preliminary=True, outline=outline
+        points=points, weights=np.ones(600), free=FreeParameters(), bounds={}, preliminary=True, outline=first.walls
     )
-    plain = searched(task, start, noise=GUESS_NOISE, min_reduction=ROUGH_REDUCTION)
+    plain = searched(task, first.design, noise=GUESS_NOISE, min_reduction=ROUGH_REDUCTION)
     nearer = nearest_from_other_edges(task, plain, GUESS_NOISE)
     assert nearer.mean_distance < 0.7 * plain.mean_distance
 
@@ -100,7 +106,7 @@ def test_a_first_blade_is_found_from_noisy_points_of_part_of_the_span_on_the_oth
     truth = _truth("compressor-stator")
     clean = _cloud(truth, 700, 0.3, 0.8) * np.array([1.0, -1.0, -1.0])
     points = _disturbed(clean, truth.chord)
-    assert _share(first_blade(points, arrangement="annular")[0], clean) < 0.01
+    assert _share(first_blade(points, arrangement="annular").design, clean) < 0.01
 
 
 @pytest.mark.slow
@@ -109,7 +115,7 @@ def test_noise_and_outliers_leave_a_first_blade_close(name: str) -> None:
     truth = _truth(name)
     clean = _cloud(truth, 700)
     points = _disturbed(clean, truth.chord)
-    assert _share(first_blade(points, arrangement="annular")[0], clean) < 0.015
+    assert _share(first_blade(points, arrangement="annular").design, clean) < 0.015
 
 
 @pytest.mark.parametrize(("name", "arrangement"), [("vki-ls89", "linear"), ("compressor-stator", "annular")])
@@ -132,3 +138,18 @@ def test_a_cascade_whose_span_lies_along_y_is_told_from_one_along_z() -> None:
     points = _cloud(_truth("vki-ls89"), 700)
     assert spans_along_y(points[:, [0, 2, 1]])
     assert not spans_along_y(points)
+
+
+def test_what_seems_to_stand_around_the_axis_may_be_of_a_cascade_with_its_span_along_y() -> None:
+    points = _cloud(_truth("vki-ls89"), 400) @ about_x(-UPRIGHT).T
+    found = [(turn, arrangement) for turn, arrangement, _ in likely_arrangements(points, None)]
+    assert found == [(0.0, "annular"), (UPRIGHT, "linear")]
+    assert [seen for _, seen, _ in likely_arrangements(points, "annular")] == ["annular"]
+
+
+@pytest.mark.slow
+def test_a_first_blade_that_is_far_around_the_axis_is_sought_in_a_cascade() -> None:
+    points = _cloud(_truth("vki-ls89"), 400) @ about_x(-UPRIGHT).T
+    found = first_blade(points)
+    assert found.turn == UPRIGHT
+    assert _share(found.design, points @ about_x(found.turn).T) < 0.01

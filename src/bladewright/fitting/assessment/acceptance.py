@@ -23,7 +23,6 @@ from bladewright.fitting.assessment.coverage import (
 from bladewright.fitting.assessment.estimates import ParameterEstimates
 from bladewright.fitting.assessment.measurement import Measurement
 from bladewright.fitting.assessment.result import with_unit
-from bladewright.fitting.initial_guess.blade import AXES_HINT
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS
 from bladewright.fitting.matching.footpoints import BETWEEN_EDGES, EDGE_PARAMETERS, Footpoints
 from bladewright.fitting.matching.noise import (
@@ -40,6 +39,8 @@ from bladewright.nurbs.basis import Reals
 NEAR_EVERYWHERE = 5e-4
 """largest deviation, of the chord, up to which a match is trusted whatever the noise: 0.05 mm of 100 mm. A choice:
 searches with nothing asked end within it (design/matching.md)."""
+AXES_HINT = "x must be the machine axis: say which column is which (--columns), or name the axis (--axis)"
+"""what may be wrong with a cloud near which no blade is found"""
 GROSS_DEVIATION = (1.5e-3, 5e-3)
 """mean and largest deviation, of the chord, beyond which no match is trusted without a tolerance. A mean of 0.15 % on
 both sides of a turbine's throat of 0.3 chords changes it by 1 %; 0.5 % is half the radius of a usual leading edge.

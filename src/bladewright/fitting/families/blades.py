@@ -167,18 +167,20 @@ def _first_blade(task: Task, kind: FitFamily, like: Any, header: DesignHeader) -
     That is one that is searched, or where the family has no blade near it the one that the search began with, whose
     edges miss no wall. Its sections and its channel are all that is taken, so that it need not be fit to be built.
     """
-    first, outline = first_blade(task.thinned(THOROUGH_POINTS).points, **header.known(like))
-    few = replace(task.thinned(QUICK_POINTS), free=FreeParameters(), bounds={}, walls=task.walls or outline)
-    found = searched(few, first, noise=GUESS_NOISE, rounds=QUICK_ROUNDS).design
+    begun = first_blade(task.thinned(THOROUGH_POINTS).points, **header.known(like))
+    task = task.turned(begun.turn)
+    few = replace(task.thinned(QUICK_POINTS), free=FreeParameters(), bounds={}, walls=task.walls or begun.walls)
+    found = searched(few, begun.design, noise=GUESS_NOISE, rounds=QUICK_ROUNDS).design
     radii = {path: value for path, value in found.parameters().items() if path.startswith(RADII)}
     # searches hold edge radii at places along the span: between them they may be larger than the thickness holds
     smaller = (found.changed({path: share * radii[path] for path in radii}) for share in SMALLER_RADII)
     closed = next(filter(can_be_built, chain([found], smaller)), found)
     task.progress("first design of the family")
     refusals = list[Exception]()
-    for blade in (closed, first):
+    for blade in (closed, begun.design):
         try:
-            return _first(task, model_of(blade).shape(blade), kind, like, header)
+            turn, first = _first(task, model_of(blade).shape(blade), kind, like, header)
+            return begun.turn + turn, first
         except (DesignError, FitError) as error:
             refusals.append(error)
     raise refusals[0]

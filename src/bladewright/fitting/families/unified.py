@@ -7,10 +7,10 @@ from typing import Any
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.assessment.acceptance import MatchTarget
+from bladewright.fitting.assessment.acceptance import AXES_HINT, MatchTarget
 from bladewright.fitting.families.kinds import DesignHeader
 from bladewright.fitting.free_parameters import FreeParameters
-from bladewright.fitting.initial_guess.blade import AXES_HINT, first_blade
+from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.initial_guess.section import first_section
 from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import Match, Task, searched
@@ -34,8 +34,8 @@ def matched_unified(
         points, structure = task.thinned(THOROUGH_POINTS).points, wanted or FIRST_SECTION
         guessed = first_section(points, structure=structure, name=header.name, length_unit=header.length_unit)
     else:
-        guessed, outline = first_blade(task.thinned(THOROUGH_POINTS).points, **header.known(like))
-        task = replace(task, outline=outline)
+        begun = first_blade(task.thinned(THOROUGH_POINTS).points, **header.known(like))
+        guessed, task = begun.design, replace(task.turned(begun.turn), outline=begun.walls)
     first = task.free.applied(guessed) if isinstance(task.free, FreeParameters) else guessed
     if start is None and first is not guessed:
         # held values may leave a guess no shape

@@ -5,7 +5,8 @@ stream surfaces give camber and thickness, whose laws make a blade with few cont
 blade then brings it to the points.
 """
 
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,23 +14,33 @@ import numpy as np
 from bladewright.blade.design.row_design import Arrangement, LengthUnit
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.errors import BladewrightError, FitError
+from bladewright.fitting.assessment.acceptance import AXES_HINT, GROSS_DEVIATION
 from bladewright.fitting.clouds.thinning import even_subset, random_subset, without_isolated_points
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.channel import SlicedChannel, machine_coordinates, ranked_channels
 from bladewright.fitting.initial_guess.slices import PLACES, fitted_law, unified_numbers
-from bladewright.fitting.matching.search import Task, searched
+from bladewright.fitting.matching.search import Task, about_x, searched
 from bladewright.fitting.model_selection.reshaping import FIRST_BLADE, widened_where_feasible, with_feasible_edges
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import plain_law
 
-AXES_HINT = "x must be the machine axis: say which column is which (--columns), or name the axis (--axis)"
-"""what may be wrong with a cloud near which no blade is found"""
 DRAWN_POINTS, SEARCHED_POINTS = 1200, 500
 """points that show the slices, and points of the search (`SEARCHED_POINTS`); they bound the time
 (design/matching_constants.md)"""
 NOISE, ROUNDS = 0.03, 3
 """noise assumed of a first blade, of the chord, and rounds of its search (design/matching_constants.md)"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FirstBlade:
+    """A blade of the unified family near points."""
+
+    design: UnifiedBlade
+    walls: tuple[Reals, ...]
+    """(m, 2) hub and shroud on the outline of the points, in (x, r) or (x, z) [m]"""
+    turn: float = 0.0
+    """angle about x by which the points are turned, as the span of a cascade lies along y [rad]"""
 
 
 def first_blade(
@@ -40,32 +51,65 @@ def first_blade(
     pitch: float | None = None,
     name: str = "blade",
     length_unit: LengthUnit = "mm",
-) -> tuple[UnifiedBlade, tuple[Reals, ...]]:
-    """A blade of the unified family near points (n, 3) [m] in the machine's axes, and hub and shroud on their outline.
+) -> FirstBlade:
+    """A blade of the unified family near points (n, 3) [m] in the machine's axes.
 
     `pitch` [m] of a linear cascade. Where blade_count or pitch is not given, one is taken at which neighbours stand
-    apart. Raises FitError where no blade that can be built lies near the points.
+    apart. Where no arrangement is given, and a blade around the axis is far off, one in a cascade is sought as well,
+    with its span along z or y. Raises FitError where no blade that can be built lies near the points.
     """
     points = without_isolated_points(np.unique(np.asarray(points, dtype=np.float64), axis=0))
-    arrangement, channels = arranged_channels(points, arrangement)
+    header = {"name": name, "length_unit": length_unit, "blade_count": blade_count, "pitch": pitch}
+    tried, refusals = list[tuple[float, FirstBlade]](), list[FitError]()
+    for turn, seen, channels in likely_arrangements(points, arrangement):
+        try:
+            begun = {**header, "arrangement": seen}
+            tried.append(_searched_blade(points @ about_x(turn).T, channels, begun, turn))
+        except FitError as error:
+            refusals.append(error)
+            continue
+        if tried[0][0] <= GROSS_DEVIATION[1]:
+            break
+    if not tried:
+        raise refusals[0]
+    return tried[-1][1] if tried[-1][0] < CLEARLY_LINEAR * tried[0][0] else tried[0][1]
+
+
+def likely_arrangements(
+    points: Reals, arrangement: Arrangement | None
+) -> Iterator[tuple[float, Arrangement, list[SlicedChannel]]]:
+    """The arrangements in which a blade may stand: how far its points are turned about x [rad], and likely channels.
+
+    First as is given, or seems so; what seems to stand around the axis may be of a cascade, with its span along y.
+    """
+    seen, channels = arranged_channels(points, arrangement)
+    yield 0.0, seen, channels
+    if arrangement is None and seen == "annular":
+        turn = UPRIGHT if spans_along_y(points) else 0.0
+        yield turn, *arranged_channels(points @ about_x(turn).T, "linear")
+
+
+def _searched_blade(
+    points: Reals, channels: Sequence[SlicedChannel], header: dict[str, Any], turn: float
+) -> tuple[float, FirstBlade]:
+    """What a short search finds from the first of several channels from which it does: how far it is off, in chords.
+
+    Raises FitError where it finds none.
+    """
     points = points[even_subset(points, DRAWN_POINTS)]
     some = points[random_subset(len(points), SEARCHED_POINTS)]
     task = Task(points=some, weights=np.ones(len(some)), free=FreeParameters(), bounds={}, preliminary=True)
-    header: dict[str, Any] = {"name": name, "length_unit": length_unit, "arrangement": arrangement}
-    if arrangement == "linear":
-        header["pitch"] = (2.0 * float(np.ptp(points[:, 1])) if pitch is None else pitch) / UNITS[length_unit]
-    else:
-        header["blade_count"] = blade_count
     refusal: BladewrightError | None = None
     for sliced in channels:
         try:
             outlined = replace(task, outline=sliced.walls)
-            found = searched(outlined, with_feasible_edges(_blade_of(sliced, header)), noise=NOISE, rounds=ROUNDS)
+            start = with_feasible_edges(_blade_of(sliced, header))
+            found = searched(outlined, start, noise=NOISE, rounds=ROUNDS)
         except BladewrightError as error:
             refusal = refusal or error
             continue
         first: Any = widened_where_feasible(found.design, FIRST_BLADE)
-        return first, sliced.walls
+        return found.mean_distance / found.model.chord, FirstBlade(design=first, walls=sliced.walls, turn=turn)
     raise FitError(f"no blade that can be built was found near the points ({refusal}); {AXES_HINT}")
 
 
@@ -74,12 +118,13 @@ def _blade_of(sliced: SlicedChannel, header: dict[str, Any]) -> UnifiedBlade:
     slices, channel, metre = sliced.slices, sliced.channel, UNITS[header["length_unit"]]
     extents, lengths = channel.extents(slices.v)
     place = slices.camber[:, 0, 1] * extents
+    wide = float(np.ptp(sliced.plane.points[:, 1] * channel.extents(sliced.plane.v)[0]))
     if channel.revolved:
-        place = np.degrees(place)
-        wide = float(np.ptp(sliced.plane.points[:, 1] * channel.extents(sliced.plane.v)[0]))
-        header = {**header, "blade_count": header["blade_count"] or int(np.clip(np.pi / max(wide, 1e-3), 1, 10_000))}
+        place, count = np.degrees(place), int(np.clip(np.pi / max(wide, 1e-3), 1, 10_000))
+        header = {**header, "blade_count": header["blade_count"] or count, "pitch": None}
     else:
-        place = place / metre
+        place, pitch = place / metre, 2.0 * wide if header["pitch"] is None else header["pitch"]
+        header = {**header, "blade_count": None, "pitch": pitch / metre}
     law = plain_law(fitted_law(place, slices.v, FIRST_BLADE.counts["leading_edge_theta"][1]))
     # a meridional length at the places of the slices, in extents of the plane
     scale = lengths[:, None] / (channel.radius(PLACES, slices.v) * extents[:, None])
