@@ -14,6 +14,7 @@ from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.models.blunt_edges import sides_of
 from bladewright.fitting.models.model import model_of
+from bladewright.section.camber_angle import CamberAngle, CamberAngleSection
 from machines.meanlines import BLUNT, on_meanline
 from machines.sections import EXAMPLES
 
@@ -123,6 +124,19 @@ def test_a_vane_is_found_from_its_points_and_its_familys_name_alone():
     found = fit(cloud("wedge diffuser with a back face"), family="wedge-diffuser")
     assert found.maximum < 1e-6 * found.built.chord
     assert found.design.section.parameters() == pytest.approx(design.section.parameters(), rel=1e-5)
+
+
+@pytest.mark.parametrize(("seed", "count"), [(3, 150), pytest.param(0, 350, marks=pytest.mark.slow)])
+def test_a_blunt_edge_is_found_that_a_search_from_behind_it_leaves_out_of_the_points(seed, count):
+    part = CamberAngle(
+        camber_angle=(-0.258, 8.92, 7.24), half_thickness=(0.00877, 0.01198, 0.01216, 0.00795), trailing_edge="blunt"
+    )
+    design = CamberAngleSection(name="blunt", length_unit="mm", chord=43.08, section=part)
+    random = np.random.default_rng(seed)
+    points = np.concatenate([side(random.random(count)) for side in sides_of(design.build())])
+    found = fit(points, family="camber-angle")
+    assert found.passed
+    assert found.maximum < 1e-9 * found.built.chord
 
 
 @pytest.mark.parametrize(

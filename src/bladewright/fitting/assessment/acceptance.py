@@ -44,9 +44,11 @@ AXES_HINT = "x must be the machine axis: say which column is which (--columns), 
 GROSS_DEVIATION = (1.5e-3, 5e-3)
 """mean and largest deviation, of the chord, beyond which no match is trusted without a tolerance. A mean of 0.15 % on
 both sides of a turbine's throat of 0.3 chords changes it by 1 %; 0.5 % is half the radius of a usual leading edge.
-So well are ends, and sides between the edges, to be known where nothing is asked, and edges, whose sharp tips move by
-more than their sides: bands of sides that are met are 1.7e-3 at most, of those that are off between their points 3.4e-3
-at least (design/matching.md)."""
+So well are ends to be known where nothing is asked, and edges (5e-3), whose sharp tips move by more than sides."""
+SHOWN_SIDE = 2.4e-3
+"""how well a place of the sides between the edges is to be known where nothing is asked, of the chord: in the middle
+between the bands of sides that are met, 1.7e-3 at most, and those of sides that are off between their points, 3.4e-3 at
+least (design/matching.md)"""
 SHARED_VARIANCE = 0.5
 """share of the variance that neighbours have in common from which more of a deviation is the shape's than noise: half
 and twice change notes only (design/matching_constants.md)"""
@@ -265,8 +267,8 @@ class Acceptance:
     @cached_property
     def _limits(self) -> Reals:
         """How well the shape is to be known at places (n,) where nothing is asked [m]."""
-        sides, edges = (each * self.match.model.chord for each in GROSS_DEVIATION)
-        return np.where(np.minimum(self._bands.u, 1.0 - self._bands.u) < BETWEEN_EDGES, edges, sides)
+        at_edge = np.minimum(self._bands.u, 1.0 - self._bands.u) < BETWEEN_EDGES
+        return np.where(at_edge, GROSS_DEVIATION[1], SHOWN_SIDE) * self.match.model.chord
 
     @cached_property
     def _bare(self) -> dict[str, NDArray[np.bool_]]:

@@ -29,7 +29,7 @@ from bladewright.fitting.families.sections import (
     TRIAL_ROUNDS,
     compared,
     criterion,
-    designs_of,
+    first_designs,
     inliers_of,
     is_far,
     misfits,
@@ -357,7 +357,7 @@ def _matched(kind: FitFamily, shape: SectionShape, points: Reals, like: Any) -> 
     """The best match of points (n, 2) of a section, of the structure of a given part, and those hardly worse."""
     task = Task(points=points, weights=np.ones(len(points)), free=_section_parameters, bounds={})
     header = DesignHeader(name="section", length_unit="m")
-    tried = compared(task, designs_of(kind, shape, kind.first_parts(shape, like), header, task))[:CONSIDERED]
+    tried = compared(task, first_designs(kind, shape, like, header, task))[:CONSIDERED]
     found = [searched(task, each.design, rounds=QUICK_ROUNDS, fading=True) for each in tried]
     return [found[number] for number in _alike(found)]
 

@@ -77,6 +77,12 @@ class SectionShape:
         at = int(np.argmax(heights**2))
         return float(heights[at]), float(PLACES[at])
 
+    def within(self, first: float, last: float) -> "SectionShape":
+        """The same section between places so much of its chord after its leading and before its trailing edge."""
+        along = np.array([np.cos(self.stagger), np.sin(self.stagger)])
+        start = self.start + first * self.chord * along
+        return replace(self, chord=(1.0 - first - last) * self.chord, start=start)
+
     def reversed(self) -> "SectionShape":
         """The same section for flow from the other side: its edges exchanged, its sides kept."""
         turn = np.array([-1.0, 1.0])

@@ -1,6 +1,7 @@
 """From points in the plane to a design of a family that is one part."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -79,8 +80,8 @@ def matched_section(
         # its segments are laid on the section one by one, which must be as near as a match
         free = replace(task, free=FreeParameters(), bounds={})
         shape = section_shape(matched_unified(free, None, None, header, MatchTarget())[1])
-    parts = kind.first_parts(shape, None if like is None else like.section)
-    tried = compared(task.thinned(TRIAL_POINTS), designs_of(kind, shape, parts, header, task))
+    part = None if like is None else like.section
+    tried = compared(task.thinned(TRIAL_POINTS), first_designs(kind, shape, part, header, task))
     structure = None if like is None else structure_of(like)
     off = misfits(tried[:CONSIDERED])
     promising = [each.design for each, miss in zip(tried, off, strict=False) if miss < PROMISING * off[0]]
@@ -202,29 +203,43 @@ def _outlined(task: Task, kind: FitFamily, start: Match, count: int, header: Des
     design: Any = start.design
     try:
         shape = section_shape(design.build())
-        (first,) = designs_of(kind, shape, [through_points(shape, count)], header, task)
+        first = _design_of(kind, shape, through_points(shape, count), header, task)
         found = searched(task, first, min_reduction=ROUGH_REDUCTION, fading=True)
     except (DesignError, FitError):
         return None
     return found if _is_built(found) else None
 
 
-def designs_of(
-    kind: FitFamily, shape: SectionShape, parts: Sequence[Any], header: DesignHeader, task: Task
+def first_designs(
+    kind: FitFamily, shape: SectionShape, like: Any, header: DesignHeader, task: Task
 ) -> Iterator[Design]:
-    """The designs that parts begin as, where a section stands."""
+    """The designs that the kinds of a family begin as near a section, or those of the structure of a given part.
+
+    A blunt edge begins inside the points, by its thickness: one that stands out is nearest to none of them, and stays.
+    """
+    for part in kind.first_parts(shape, like):
+        inside = shape
+        # what has no outline is refused where it is searched
+        with suppress(DesignError):
+            outline = part.outline(SINGLE_SECTION)
+            edges = zip((outline.leading_edge, outline.trailing_edge), shape.radii, strict=True)
+            inside = shape.within(*(2.0 * radius * (edge.kind == "blunt") for edge, radius in edges))
+        yield _design_of(kind, inside, part, header, task)
+
+
+def _design_of(kind: FitFamily, shape: SectionShape, part: Any, header: DesignHeader, task: Task) -> Design:
+    """The design that a part begins as, where a section stands."""
     metre = UNITS[header.length_unit]
-    for part in parts:
-        design: Design = kind.section(
-            name=header.name,
-            length_unit=header.length_unit,
-            chord=shape.chord / metre,
-            pitch=None if header.pitch is None else header.pitch / metre,
-            leading_edge_x=float(shape.start[0]) / metre,
-            leading_edge_y=float(shape.start[1]) / metre,
-            section=part,
-        )
-        yield task.free.applied(design) if isinstance(task.free, FreeParameters) else design
+    design: Design = kind.section(
+        name=header.name,
+        length_unit=header.length_unit,
+        chord=shape.chord / metre,
+        pitch=None if header.pitch is None else header.pitch / metre,
+        leading_edge_x=float(shape.start[0]) / metre,
+        leading_edge_y=float(shape.start[1]) / metre,
+        section=part,
+    )
+    return task.free.applied(design) if isinstance(task.free, FreeParameters) else design
 
 
 def compared(task: Task, designs: Iterable[Design], *, rounds: int = TRIAL_ROUNDS) -> list[Match]:
