@@ -215,7 +215,7 @@ def first_designs(
 ) -> Iterator[Design]:
     """The designs that the kinds of a family begin as near a section, or those of the structure of a given part.
 
-    A blunt edge begins inside the points, by its thickness: one that stands out is nearest to none of them, and stays.
+    A blunt edge begins inside the points, by half its thickness: one that stands out is nearest to none, and stays.
     """
     for part in kind.first_parts(shape, like):
         inside = shape
@@ -223,7 +223,7 @@ def first_designs(
         with suppress(DesignError):
             outline = part.outline(SINGLE_SECTION)
             edges = zip((outline.leading_edge, outline.trailing_edge), shape.radii, strict=True)
-            inside = shape.within(*(2.0 * radius * (edge.kind == "blunt") for edge, radius in edges))
+            inside = shape.within(*(radius * (edge.kind == "blunt") for edge, radius in edges))
         yield _design_of(kind, inside, part, header, task)
 
 
