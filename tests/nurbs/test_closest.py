@@ -6,8 +6,10 @@ from scipy.spatial import cKDTree
 
 from bladewright.errors import GeometryError
 from bladewright.nurbs.basis import uniform_knots
+from bladewright.nurbs.bezier import patches
 from bladewright.nurbs.closest import Descents, closest_on_curve, closest_on_surface
 from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.descent import polished
 from bladewright.nurbs.domain import extended
 from bladewright.nurbs.fit import interpolated
 from bladewright.nurbs.refine import inserted
@@ -272,3 +274,16 @@ def test_places_on_a_folded_sheet_that_leans_are_found_but_beside_the_fold():
     points = sheet(*np.random.default_rng(0).random((2, 2000)))
     # a descent may begin on the wrong leg where the fold is as near as the lean from one sample across to the next
     assert np.max(Descents((sheet,)).nearest(points).square) < (np.sqrt(0.18) / 20.0) ** 2
+
+
+def test_a_descent_that_oversteps_a_corner_stays_on_its_side_and_one_beyond_it_ends_on_the_corner() -> None:
+    side, face = [(0.0, 0.0), (0.2, 0.15), (0.8, 0.2), (1.0, 0.0)], [(1.0, -0.1), (1.0, -0.2), (1.0, -0.3)]
+    net = np.array([[(*point, 0.0), (*point, 1.0)] for point in (*side, *face)])
+    knots = np.repeat([0.0, 0.5, 1.0], (4, 3, 4))
+    bent = Surface(control_points=net, knots_u=knots, knots_v=np.repeat([0.0, 1.0], 2), degree_u=3, degree_v=1)
+    queries = np.array([[0.22119348, -0.1094632, 0.15009043], [1.3, 0.2, 0.5]])
+    starts = np.array([[0.02544791, 0.9820701], [0.9, 0.1]])
+    found = polished(patches(bent), queries, np.zeros(2, dtype=np.intp), starts)
+    assert found.patch[0] == 0
+    assert found.square[0] == pytest.approx(closest_on_surface(bent, queries[0]).distances ** 2, rel=1e-12)
+    assert found.square[1] == pytest.approx(0.3**2 + 0.2**2, rel=1e-12)
