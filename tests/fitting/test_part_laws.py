@@ -1,6 +1,7 @@
 """Laws of the families that are one part, with other numbers of control points; where their matches begin."""
 
 from dataclasses import replace
+from itertools import islice
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from bladewright.fitting.assessment.acceptance import MatchTarget
 from bladewright.fitting.families.first_parts import through_points
 from bladewright.fitting.families.kinds import FAMILIES, DesignHeader
 from bladewright.fitting.families.section_shape import section_shape
-from bladewright.fitting.families.sections import _through_points, criterion, designs_of
+from bladewright.fitting.families.sections import _through_points, criterion, first_designs
 from bladewright.fitting.free_parameters import EDGES, FreeParameters
 from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.model_selection import reshaping
@@ -127,12 +128,21 @@ def task(design, count=120):
     return Task(points=points, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
 
 
+def test_kinds_with_a_blunt_edge_begin_inside_the_points_by_half_its_thickness():
+    kind, header = FAMILIES["camber-angle"], DesignHeader(name="found", length_unit="mm")
+    shape = section_shape(section(STATOR).build())
+    chords = {
+        each.section.trailing_edge: 1e-3 * each.chord / shape.chord
+        for each in first_designs(kind, shape, None, header, task(section(STATOR)))
+    }
+    assert chords == pytest.approx({"round": 1.0, "sharp": 1.0, "blunt": 1.0 - shape.radii[1]})
+
+
 def test_an_outline_of_points_follows_what_no_profile_of_a_kind_does():
     some, kind, header = task(section(STATOR)), FAMILIES["profile"], DesignHeader(name="found", length_unit="mm")
     shape = section_shape(section(STATOR).build())
-    found = [
-        searched(some, each, rounds=1) for each in designs_of(kind, shape, kind.first_parts(shape)[:3], header, some)
-    ]
+    firsts = islice(first_designs(kind, shape, None, header, some), 3)
+    found = [searched(some, each, rounds=1) for each in firsts]
     target = MatchTarget(parameters=26)
     outline, _ = _through_points(some, kind, found, header, target, found[0])
     assert len(outline.problem.paths) == 26

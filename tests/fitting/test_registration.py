@@ -70,9 +70,8 @@ def shaken(name, seed):
             return design.changed(values)
 
 
-@pytest.mark.parametrize(
-    ("name", "seed"), [pytest.param("aachen-stator", 101, marks=pytest.mark.slow), ("propeller", 100)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "seed"), [("aachen-stator", 101), ("propeller", 100)])
 def test_a_start_whose_shape_is_off_has_the_right_way_among_those_about_as_near(name, seed):
     """A prism is not thrown along its span; a flat blade turned over may be nearer than as it is."""
     points = rows(name, 40, 15)
