@@ -20,7 +20,8 @@ DESIGNS = {
     "cascade": prismatic(VANE).changed("tolerance", COARSE),
     "section": VANE,
 }
-BLADES = ("fan", "impeller", "cascade")
+FAN = pytest.param("fan", marks=pytest.mark.slow)
+BLADES = ("impeller", "cascade", FAN)
 
 
 def small_solid(axes, blade, *, neighbours, **_):
@@ -67,7 +68,7 @@ def _in_its_unit(name):
         yield _drawn(name)
 
 
-@pytest.fixture(params=list(DESIGNS))
+@pytest.fixture(params=[*BLADES, "section"])
 def drawn(request):
     yield from _in_its_unit(request.param)
 
