@@ -120,7 +120,10 @@ class StructureSearch:
                 richer = without_false_outliers(self.task, richer)
             except (DesignError, FitError):
                 break
-            before, found = found, richer if found is match or richer.rms < found.rms else found
+            limit = target.tolerance or NEAR_EVERYWHERE * match.model.chord
+            # one that is near everywhere comes before one that is nearer on average
+            nearer = (richer.maximum > limit, richer.rms) < (found.maximum > limit, found.rms)
+            before, found = found, richer if found is match or nearer else found
             near = found.maximum <= NEAR_EVERYWHERE * match.model.chord
             ratio = min(richer.rms / before.rms, richer.maximum / before.maximum)
             gained = ratio <= (RICHER_GAIN if near else SETTLED_RICH)
