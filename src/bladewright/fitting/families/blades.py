@@ -137,7 +137,7 @@ def _selected(
 def _through_points(task: Task, match: Match, target: MatchTarget) -> tuple[Match, str] | None:
     """The match by contours that begin as the sections of another match, and why it ends where no target is met.
 
-    None where it has no shape.
+    None where it has no shape, or cannot be built.
     """
     design: Any = match.design
     some = inliers_of(task, match, SEVERAL_POINTS)
@@ -145,9 +145,10 @@ def _through_points(task: Task, match: Match, target: MatchTarget) -> tuple[Matc
         parts = [through_points(each, CONTOUR_POINTS) for each in _shapes_of(design.section)]
         first = replace(design, section=part_of_laws(parts))
         found = searched(some, first, min_reduction=ROUGH_REDUCTION, settled=SETTLED_RICH, fading=True)
-        return determined(some, found) if target.open else (found, "")
+        outlined = determined(some, found) if target.open else (found, "")
     except (DesignError, FitError):
         return None
+    return outlined if can_be_built(outlined[0].design) else None
 
 
 def _shapes_of(part: Any) -> list[SectionShape]:
