@@ -7,6 +7,7 @@ import pytest
 
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.blade.native.blade import Blade
+from bladewright.errors import FitError
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.blade import (
     UPRIGHT,
@@ -145,6 +146,15 @@ def test_what_seems_to_stand_around_the_axis_may_be_of_a_cascade_with_its_span_a
     found = [(turn, arrangement) for turn, arrangement, _ in likely_arrangements(points, None)]
     assert found == [(0.0, "annular"), (UPRIGHT, "linear")]
     assert [seen for _, seen, _ in likely_arrangements(points, "annular")] == ["annular"]
+
+
+def test_what_cannot_be_sliced_as_a_cascade_still_stands_around_the_axis(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(_: np.ndarray) -> bool:
+        raise FitError("no slices")
+
+    monkeypatch.setattr("bladewright.fitting.initial_guess.blade.spans_along_y", refused)
+    found = likely_arrangements(_cloud(_truth("vki-ls89"), 400) @ about_x(-UPRIGHT).T, None)
+    assert [seen for _, seen, _ in found] == ["annular"]
 
 
 @pytest.mark.slow

@@ -25,7 +25,8 @@ LONGEST_STEP = 2.0
 derivatives predicted them."""
 LEAST_GAIN = 1e-17
 """Relative change of a squared distance that a step must predict: less is rounding, which would move a place for ever
-where a surface curves as much as the circle about the query."""
+where a surface curves as much as the circle about the query. With 0 or 1e-14 distances are the same to rounding
+(design/nurbs_constants.md)."""
 NOISE = 1e-13
 """Relative rise of a squared distance that counts as rounding, and so does not reject a step. With 0 or 1e-10 distances
 are the same to rounding (design/nurbs_constants.md)."""

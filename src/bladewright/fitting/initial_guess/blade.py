@@ -6,6 +6,7 @@ blade then brings it to the points.
 """
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -68,6 +69,7 @@ def first_blade(
         except FitError as error:
             refusals.append(error)
             continue
+        # further off on average than any point of a match may be, it may stand otherwise
         if tried[0][0] <= GROSS_DEVIATION[1]:
             break
     if not tried:
@@ -84,17 +86,19 @@ def likely_arrangements(
     """
     seen, channels = arranged_channels(points, arrangement)
     yield 0.0, seen, channels
-    if arrangement is None and seen == "annular":
-        turn = UPRIGHT if spans_along_y(points) else 0.0
-        yield turn, *arranged_channels(points @ about_x(turn).T, "linear")
+    # what cannot be sliced as a cascade is none
+    with suppress(BladewrightError):
+        if arrangement is None and seen == "annular":
+            turn = UPRIGHT if spans_along_y(points) else 0.0
+            yield turn, *arranged_channels(points @ about_x(turn).T, "linear")
 
 
 def _searched_blade(
     points: Reals, channels: Sequence[SlicedChannel], header: dict[str, Any], turn: float
 ) -> tuple[float, FirstBlade]:
-    """What a short search finds from the first of several channels from which it does: how far it is off, in chords.
+    """What a short search of turned points (n, 3) [m] finds, and its mean distance from them, in chords.
 
-    Raises FitError where it finds none.
+    It begins from the first of several channels from which there is one. Raises FitError where there is none.
     """
     points = points[even_subset(points, DRAWN_POINTS)]
     some = points[random_subset(len(points), SEARCHED_POINTS)]
