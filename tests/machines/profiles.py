@@ -31,6 +31,21 @@ PROFILES = {
     "naca-6409-blunt": Naca4(
         thickness=0.09, camber=0.06, camber_position=0.4, trailing_edge="blunt", trailing_edge_thickness=0.03
     ),
+    "naca-2410-linear": Naca4(
+        thickness=0.1,
+        camber=0.02,
+        camber_position=0.4,
+        trailing_edge="round",
+        trailing_edge_thickness=0.06,
+        trailing_edge_opening="linear",
+    ),
+    "naca-65-(8)08-linear": Naca65(
+        thickness=0.08,
+        lift_coefficient=0.8,
+        trailing_edge="blunt",
+        trailing_edge_thickness=0.2,
+        trailing_edge_opening="linear",
+    ),
     "naca-23012": Naca5(thickness=0.12, design_lift=0.3, camber_position=0.15, trailing_edge="blunt"),
     "naca-23112": Naca5(thickness=0.12, design_lift=0.3, camber_position=0.15, reflexed=True),
     "naca-64-212": Naca6(series="64", thickness=0.12, design_lift=0.2, uniform_load=0.8),

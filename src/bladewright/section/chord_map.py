@@ -208,7 +208,7 @@ def clustered_place(
     round_end: bool,
     clustering: tuple[float, float],
     stretching: float,
-    bend: float,
+    bend: Array,
     joint: Array | None,
 ) -> ChordPlace:
     """Places at s (k,) with their derivatives up to an order, by a map that is the same in form for all sections.
@@ -216,9 +216,9 @@ def clustered_place(
     sqrt(x) is analytic and odd about s = 0 but for its second derivative, and so is sqrt(1 - x) about s = 1 where the
     trailing edge is round; elsewhere x runs into s = 1 with a slope. `clustering` are the amplitudes of the sine waves
     that cluster the steps of s at the leading and at a round trailing edge, 0 (none) to below 1 [-]; `stretching` is k
-    of the hyperbolic tangent that clusters them at a sharp or blunt one, 0: none [-]. `bend` is -a1 / a0 of a thickness
-    a0 sqrt(x) + a1 x + ...: with it the thickness has no second derivative at s = 0. `joint` is x (..., 1) of the mean
-    line's joint, which is at s = `JOINT`.
+    of the hyperbolic tangent that clusters them at a sharp or blunt one, 0: none [-]. `bend` is -a1 / a0 (..., 1) of a
+    thickness a0 sqrt(x) + a1 x + ...: with it the thickness has no second derivative at s = 0. `joint` is x (..., 1) of
+    the mean line's joint, which is at s = `JOINT`.
     """
     phase = _clustered_phase(s, order, clustering, stretching)
     sine, cosine = sine_and_cosine(phase)
@@ -254,7 +254,7 @@ def _clustered_phase(s: Reals, order: int, clustering: tuple[float, float], stre
     return hyperbolic_tangent(phase * (2.0 / np.pi * stretching)) * (0.5 * np.pi / np.tanh(stretching))
 
 
-def _joint_ratio(joint: Array, at: float, bend: float) -> Array:
+def _joint_ratio(joint: Array, at: float, bend: Array) -> Array:
     """Ratio of the projective map of x that brings the joint to its place."""
     root = np.sqrt(joint)
     before_bend = 2.0 * root / (1.0 + np.sqrt(1.0 + 4.0 * bend * (1.0 - root) * root))

@@ -1,5 +1,7 @@
 """Edges of profiles that are laid around a mean line."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,7 @@ from bladewright.section.laws import Span
 from bladewright.section.profiles.c4 import C4
 from bladewright.section.profiles.naca4 import Naca4
 from bladewright.section.profiles.naca5 import Naca5
+from bladewright.section.profiles.naca6 import Naca6
 from bladewright.section.profiles.naca65 import Naca65
 
 SPAN = Span(np.zeros(1))
@@ -56,7 +59,38 @@ def test_a_blunt_trailing_edge_is_as_thick_as_asked(share):
     assert np.linalg.norm(edge.upper.point - edge.lower.point) == pytest.approx(0.1 * share, rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    "closed",
+    [
+        Naca4(thickness=0.12),
+        Naca5(thickness=0.1, design_lift=0.0),
+        C4(thickness=0.1),
+        Naca65(thickness=0.1),
+        Naca6(series="64", thickness=0.1),
+    ],
+    ids=lambda profile: profile.kind,
+)
+@pytest.mark.parametrize(("opening", "power"), [("linear", 1), ("quartic", 4)])
+def test_an_edge_is_opened_by_its_power_of_x(closed, opening, power):
+    share = 0.3
+    table, x = np.linspace(0.0, 1.0, 4001), np.linspace(0.05, 0.95, 50)
+
+    def half(profile):
+        upper, lower = (side[0] for side in profile.outline(SPAN).points(table))
+        # from a table of straight pieces
+        return 0.5 * (np.interp(x, upper[:, 0], upper[:, 1]) - np.interp(x, lower[:, 0], lower[:, 1]))
+
+    straight = closed.changed("camber_angle", 0.0) if isinstance(closed, C4) else closed
+    blunt = replace(straight, trailing_edge="blunt", trailing_edge_thickness=share, trailing_edge_opening=opening)
+    added = half(blunt) - half(straight)
+    assert added == pytest.approx(0.5 * share * closed.thickness * x**power, abs=2e-6)
+
+
 def test_what_contradicts_is_refused():
+    with pytest.raises(DesignError, match=r"trailing_edge_opening is 'linear' and trailing_edge is 'sharp'"):
+        Naca4(thickness=0.1, trailing_edge_opening="linear")
+    with pytest.raises(DesignError, match=r"trailing_edge_opening is 'straight'"):
+        Naca4(thickness=0.1, trailing_edge="blunt", trailing_edge_opening="straight")
     with pytest.raises(DesignError, match=r"trailing_edge is 'sharp', which has none"):
         Naca4(thickness=0.1, trailing_edge_thickness=0.02)
     with pytest.raises(DesignError, match=r"camber_position is missing"):

@@ -219,10 +219,13 @@ LIFT = 4.0 * np.pi / np.log(2.0)
 """design lift of a mean line of uniform load, over its camber (Abbott and von Doenhoff 1959, eq. 4.26)"""
 PROFILE_EDGES: tuple[dict[str, Any], ...] = (
     {},
-    {"trailing_edge": "round", "trailing_edge_thickness": 0.02},
-    {"trailing_edge": "blunt", "trailing_edge_thickness": 0.02},
+    *(
+        {"trailing_edge": edge, "trailing_edge_thickness": 0.02, "trailing_edge_opening": opening}
+        for edge in ("round", "blunt")
+        for opening in ("quartic", "linear")
+    ),
 )
-"""kinds of trailing edge: sharp, round, blunt"""
+"""kinds of trailing edge: sharp, and round or blunt, opened as x^4 or as x"""
 PROFILES: tuple[Profile, ...] = (
     *(Naca4(thickness=0.1, camber=0.02, camber_position=0.4, **edge) for edge in PROFILE_EDGES),
     *(Naca65(thickness=0.1, lift_coefficient=0.5, **edge) for edge in PROFILE_EDGES),

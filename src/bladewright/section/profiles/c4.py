@@ -24,8 +24,6 @@ FORM = {power: value * 0.5 / LARGEST for power, value in POLYNOMIAL.items()}
 """half thickness over the thickness: coefficients of the powers of sqrt(x)"""
 END_THICKNESS = 0.1058603
 """thickness that the polynomial has at x = 1, of the maximum thickness [-]"""
-BEND = 0.0914 / 0.3048
-"""-a2 / a1 of the form a1 sqrt(x) + a2 x + ... [-]"""
 
 CAMBER = Limits(-120.0, 120.0, "the camber angle must lie between -120 and 120 deg")
 
@@ -47,7 +45,7 @@ class C4(PublishedProfile):
         """The exact sections (..., m) at the places of the span, in chords, unstaggered."""
         return MeanLineOutline(
             mean_line=ArcLine(angle=radians(span.values(self.camber_angle))[..., None]),
-            thickness=PowerForm(coefficients=self.form_coefficients(span, FORM, END_THICKNESS), bend=BEND),
+            thickness=PowerForm(coefficients=self.form_coefficients(span, FORM, END_THICKNESS)),
             end=self.trailing_edge,
         )
 

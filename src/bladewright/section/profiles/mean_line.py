@@ -30,14 +30,21 @@ FAR = 0.99
 """1 - x from which on the cap of a round trailing edge is left out: there x^n is below 0.01^20, n being 20 or more
 [-]"""
 
+TrailingEdge = Literal["sharp", "blunt", "round"]
+Opening = Literal["quartic", "linear"]
+"""how half a thickness that is closed becomes one that ends open: by what is added to it, in proportion to x^4 or x"""
+
 
 class ThicknessForm(ABC):
     """Half thicknesses T(x) = a1 sqrt(x) + a2 x + ... of sections (...), in chords."""
 
-    bend: float
-    """-a2 / a1, the same for all sections, not negative"""
     end: Array
     """T(1) (..., 1)"""
+
+    @property
+    @abstractmethod
+    def bend(self) -> Array:
+        """-a2 / a1 (..., 1), above -1."""
 
     @abstractmethod
     def half(self, root: Series) -> Series:
@@ -50,7 +57,11 @@ class PowerForm(ThicknessForm):
 
     coefficients: Sequence[Array]
     """(..., 1) of the powers, from the first on"""
-    bend: float
+
+    @property
+    def bend(self) -> Array:
+        """Of the first two coefficients."""
+        return np.asarray(-self.coefficients[1] / self.coefficients[0])
 
     @property
     def end(self) -> Array:  # type: ignore[override]
@@ -64,12 +75,20 @@ class PowerForm(ThicknessForm):
 
 @dataclass(frozen=True, kw_only=True)
 class ChebyshevForm(ThicknessForm):
-    """sqrt(x) (1 - x) times Chebyshev polynomials of 2 x - 1, and x^4 times the half thickness of the trailing edge."""
+    """sqrt(x) (1 - x) times Chebyshev polynomials of 2 x - 1, and the trailing edge's half thickness times x or x^4."""
 
     coefficients: Sequence[Array]
     """(..., 1) by degree"""
     end: Array
-    bend: float = 0.0
+    opening: Opening
+
+    @property
+    def bend(self) -> Array:
+        """Of the opening alone, over the polynomial at x = 0, where the one of degree k is (-1)^k."""
+        if self.opening == "quartic":
+            return np.zeros(())
+        nose = sum(self.coefficients[::2]) - sum(self.coefficients[1::2])
+        return np.asarray(-self.end / nose)
 
     def half(self, root: Series) -> Series:
         """By Clenshaw's recurrence."""
@@ -81,10 +100,7 @@ class ChebyshevForm(ThicknessForm):
             value, later = twice * value - later + each, value
         value = twice * 0.5 * value - later + self.coefficients[0]
         square = x * x
-        return root * (1.0 - x) * value + square * square * self.end
-
-
-TrailingEdge = Literal["sharp", "blunt", "round"]
+        return root * (1.0 - x) * value + (x if self.opening == "linear" else square * square) * self.end
 
 
 class ProfileMeanLine(ABC):

@@ -22,8 +22,6 @@ FORM = {1: 1.4845, 2: -0.6300, 4: -1.7580, 6: 1.4215, 8: -0.5075}
 five-digit profiles"""
 END_THICKNESS = 0.021
 """thickness of the published trailing edge, of the maximum thickness (NACA Report 460, 1933) [-]"""
-BEND = 0.6300 / 1.4845
-"""-a2 / a1 of the form a1 sqrt(x) + a2 x + ... [-]"""
 
 CAMBER = Limits(-0.3, 0.3, "camber must lie between -0.3 and 0.3 chords")
 POSITION = Limits(0.02, 0.98, "the place of the largest camber must lie above 0.02 and below 0.98 chords")
@@ -60,7 +58,7 @@ class Naca4(PublishedProfile):
             line = FourDigitLine(camber=camber, joint=position)
         return MeanLineOutline(
             mean_line=line,
-            thickness=PowerForm(coefficients=self.form_coefficients(span, FORM, END_THICKNESS), bend=BEND),
+            thickness=PowerForm(coefficients=self.form_coefficients(span, FORM, END_THICKNESS)),
             end=self.trailing_edge,
         )
 

@@ -16,7 +16,7 @@ from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
 from bladewright.section.power_series import Series
 from bladewright.section.profiles.mean_line import MeanLineOutline, PowerForm, ProfileMeanLine
-from bladewright.section.profiles.naca4 import BEND, END_THICKNESS, FORM
+from bladewright.section.profiles.naca4 import END_THICKNESS, FORM
 from bladewright.section.profiles.profile import PublishedProfile
 
 ORDER = 24
@@ -56,7 +56,7 @@ class Naca5(PublishedProfile):
         ratio = _ratio(joint, position) if self.reflexed else 0.0 * joint
         return MeanLineOutline(
             mean_line=FiveDigitLine(factor=lift / _integral(joint, ratio, _lift), joint=joint, ratio=ratio),
-            thickness=PowerForm(coefficients=self.form_coefficients(span, FORM, END_THICKNESS), bend=BEND),
+            thickness=PowerForm(coefficients=self.form_coefficients(span, FORM, END_THICKNESS)),
             end=self.trailing_edge,
         )
 

@@ -105,6 +105,7 @@ class Naca6(PublishedProfile):
             thickness=ChebyshevForm(
                 coefficients=[thickness * row for row in rows],
                 end=0.5 * thickness * self.trailing_edge_share(span, END_THICKNESS),
+                opening=self.trailing_edge_opening,
             ),
             end=self.trailing_edge,
             clustering=clustering(self.trailing_edge),

@@ -49,6 +49,7 @@ class Naca65(PublishedProfile):
             thickness=ChebyshevForm(
                 coefficients=[thickness * each for each in FORM],
                 end=0.5 * thickness * self.trailing_edge_share(span, END_THICKNESS),
+                opening=self.trailing_edge_opening,
             ),
             end=self.trailing_edge,
             clustering=clustering(self.trailing_edge),

@@ -14,10 +14,10 @@ from bladewright.numerics.elementary import Array, radians
 from bladewright.section import checks
 from bladewright.section.family import SectionFamily
 from bladewright.section.laws import Span
-from bladewright.section.profiles.mean_line import TrailingEdge
+from bladewright.section.profiles.mean_line import Opening, TrailingEdge
 
-POWER = 8
-"""power of sqrt(x) whose coefficient closes or opens the trailing edge: x^4, which hardly touches the front half"""
+POWERS: dict[Opening, int] = {"quartic": 8, "linear": 2}
+"""power of sqrt(x) whose coefficient opens the trailing edge: x^4, which hardly touches the front half, or x"""
 ANGLE = Limits(-90.0, 90.0, "an angle must lie between -90 and 90 deg")
 THICKNESS = Limits(0.0, 0.4, "thickness must be above 0 and below 0.4 chords")
 TRAILING_EDGE = Limits(
@@ -50,6 +50,9 @@ class PublishedProfile(Profile):
     """how the trailing edge ends: sharp, blunt (cut off) or round (a cap within the same chord)"""
     trailing_edge_thickness: Law | None = parameter("-", limits=TRAILING_EDGE, default=None)
     """thickness at a blunt or round trailing edge, of the maximum thickness; none: the published one [-]"""
+    trailing_edge_opening: Opening = "quartic"
+    """how a blunt or round trailing edge is opened: in proportion to x^4, as published (quartic), or to x, by a wedge
+    that makes the profile thicker everywhere (linear)"""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -59,17 +62,23 @@ class PublishedProfile(Profile):
                 "trailing_edge_thickness is given and trailing_edge is 'sharp', which has none: leave it out, or make "
                 "the trailing edge 'blunt' or 'round'"
             )
+        checks.choice("trailing_edge_opening", self.trailing_edge_opening, tuple(POWERS))
+        if self.trailing_edge_opening != "quartic" and self.trailing_edge == "sharp":
+            raise DesignError(
+                f"trailing_edge_opening is '{self.trailing_edge_opening}' and trailing_edge is 'sharp', which is "
+                "closed: leave it out, or make the trailing edge 'blunt' or 'round'"
+            )
 
     def form_coefficients(self, span: Span, form: Mapping[int, float | Array], published: float) -> list[Array]:
         """Coefficients (..., m, 1) of the powers of sqrt(x), from the first on, of the half thickness.
 
-        `form` holds those over the thickness. To that of x^4 is added what makes the thickness at x = 1 the one asked
-        for; `published` is that of the published form, of the maximum thickness.
+        `form` holds those over the thickness. That of x^4 closes it at x = 1, and that of the opening makes the
+        thickness there the one asked for; `published` is that of the published form, of the maximum thickness.
         """
         coefficients = dict(form)
-        coefficients[POWER] = (
-            coefficients.get(POWER, 0.0) + 0.5 * self.trailing_edge_share(span, published) - sum(form.values())
-        )
+        opening, closing = POWERS[self.trailing_edge_opening], POWERS["quartic"]
+        coefficients[opening] = coefficients.get(opening, 0.0) + 0.5 * self.trailing_edge_share(span, published)
+        coefficients[closing] = coefficients.get(closing, 0.0) - sum(form.values())
         thickness = span.values(self.thickness)[..., None]
         return [thickness * coefficients.get(k, 0.0) for k in range(1, max(coefficients) + 1)]
 
