@@ -135,7 +135,9 @@ def test_points_of_an_end_face_are_told_from_those_of_the_sides():
     assert len(found.walls["shroud"].places) == 25
 
 
-@pytest.mark.parametrize(("v", "belong"), [(1.0, True), (np.random.default_rng(6).uniform(0.95, 1.0, 25), False)])
+@pytest.mark.parametrize(
+    ("v", "belong"), [(1.0, True), (0.98, True), (np.random.default_rng(6).uniform(0.95, 1.0, 25), False)]
+)
 def test_outliers_belong_to_an_end_face_where_they_stand_in_its_row(v, belong):
     points = np.concatenate([sides_cloud(BLADE, 300), between(v)])
     _, _, there = shape(BLADE)

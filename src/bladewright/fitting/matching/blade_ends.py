@@ -31,10 +31,10 @@ ROW_PARTS, ROW_SHARE = 20, 0.5
 (`ROW_SHARE`): a cloud of a part of the span has none (design/matching.md)"""
 FACE_BAND, FACE_DEPTH, FACE_NEARER_WALL = 0.1, 5.0, 0.3
 """a point of an end face has its footpoint within this distance of the end, in v, lies `FACE_DEPTH` usual distances
-inside the sides, and is nearer to the wall than to the sides by the ratio `FACE_NEARER_WALL`
+inside the sides, and is nearer to the wall, or to the row of outliers beside it, by the ratio `FACE_NEARER_WALL`
 (design/matching_constants.md)."""
 FACE_OUTLIERS, FACE_OUTLIERS_NEARER_WALL = 20, 0.1
-"""outliers on an end face belong to it where there are so many, and half of them are nearer to the wall than to the
+"""outliers on an end face belong to it where there are so many, and half of them are nearer to one row than to the
 sides by the ratio `FACE_OUTLIERS_NEARER_WALL` (design/matching_constants.md)."""
 DEEPEST_FACE_POINT = 0.2
 """depth of the deepest point of an end face, of the half thickness of the blade: shallower ones lie beside an edge that
@@ -143,11 +143,13 @@ def blade_ends_of(
     for name, end in END_PARAMETERS.items():
         beside_end = np.abs(footpoints.v - end) < FACE_BAND
         inside = np.flatnonzero(beside_end & (footpoints.heights < -FACE_DEPTH * usual))
-        distances = WallPoints(name=name, places=places[inside]).located(exact)[2]
-        share = np.abs(distances) / -footpoints.heights[inside]
-        # points of a solid's end faces are outliers to its sides; so are stray points, which stand in no row
-        facing = ~rows[inside] & (share < FACE_NEARER_WALL)
-        dense = np.count_nonzero(facing) >= FACE_OUTLIERS and np.median(share[facing]) < FACE_OUTLIERS_NEARER_WALL
+        depth, out = -footpoints.heights[inside], ~rows[inside]
+        share = np.abs(WallPoints(name=name, places=places[inside]).located(exact)[2]) / depth
+        # points of a solid's end faces are outliers to its sides, and stand in a row, beside a wall that is not found
+        # yet; stray points do not
+        if np.count_nonzero(out) >= FACE_OUTLIERS:
+            share[out] = _off_row(WallPoints(name=name, places=places[inside[out]]), exact) / depth[out]
+        dense = np.count_nonzero(out) >= FACE_OUTLIERS and np.median(share[out]) < FACE_OUTLIERS_NEARER_WALL
         face = inside[(share < FACE_NEARER_WALL) & (rows[inside] | dense)]
         # beside an edge that is not yet found, points lie a little inside too
         if np.max(-footpoints.heights[face], initial=0.0) > DEEPEST_FACE_POINT * _half_thickness(shape, end):
