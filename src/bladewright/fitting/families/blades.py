@@ -26,6 +26,7 @@ from bladewright.fitting.families.section_shape import PLACES, SectionShape, sec
 from bladewright.fitting.families.sections import (
     CONSIDERED,
     PROMISING,
+    TRIAL_POINTS,
     TRIAL_ROUNDS,
     compared,
     criterion,
@@ -34,7 +35,7 @@ from bladewright.fitting.families.sections import (
     is_far,
     misfits,
 )
-from bladewright.fitting.free_parameters import EDGES, FreeParameters, gauge_parameters
+from bladewright.fitting.free_parameters import EDGES, FreeParameters
 from bladewright.fitting.initial_guess.blade import UPRIGHT, first_blade, spans_along_y
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.scales import check_bounds, part_range
@@ -356,9 +357,9 @@ def _along_span(shapes: Sequence[SectionShape], middle: Match) -> list[Any]:
 
 def _matched(kind: FitFamily, shape: SectionShape, points: Reals, like: Any) -> list[Match]:
     """The best match of points (n, 2) of a section, of the structure of a given part, and those hardly worse."""
-    task = Task(points=points, weights=np.ones(len(points)), free=_section_parameters, bounds={})
+    task = Task(points=points, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
     header = DesignHeader(name="section", length_unit="m")
-    tried = compared(task, first_designs(kind, shape, like, header, task))[:CONSIDERED]
+    tried = compared(task.thinned(TRIAL_POINTS), first_designs(kind, shape, like, header, task))[:CONSIDERED]
     found = [searched(task, each.design, rounds=QUICK_ROUNDS, fading=True) for each in tried]
     return [found[number] for number in _alike(found)]
 
@@ -367,8 +368,3 @@ def _alike(matches: Sequence[Match]) -> list[int]:
     """The numbers of those that are hardly worse than the best, in their order."""
     off = misfits(matches)
     return [number for number, each in enumerate(off) if each <= ALIKE * min(off)]
-
-
-def _section_parameters(design: Design) -> tuple[str, ...]:
-    held = gauge_parameters(design)
-    return tuple(path for path in design.parameters() if path.startswith("section.") and path not in held)
