@@ -14,7 +14,7 @@ from bladewright.fitting.assessment.acceptance import MatchTarget
 from bladewright.fitting.families import blades
 from bladewright.fitting.families.blades import _alike, matched_blade
 from bladewright.fitting.families.first_parts import through_points
-from bladewright.fitting.families.flow_path import ClosedChannel
+from bladewright.fitting.families.flow_path import CONTINUATIONS, ClosedChannel
 from bladewright.fitting.families.kinds import FAMILIES, DesignHeader
 from bladewright.fitting.families.laws import LAW_COUNT, part_along_span, part_of_laws, with_mean_laws
 from bladewright.fitting.families.section_shape import section_shape, unrolled
@@ -141,6 +141,20 @@ def test_an_edge_whose_corner_has_slid_along_its_wall_runs_on_as_the_rest_of_it(
     found = ClosedChannel(exact=SimpleNamespace(channel=channel)).edge("trailing_edge", 1e-3)
     steps = np.diff(np.array(found.points), axis=0)
     assert np.all(np.abs(steps[:, 1]) < np.abs(steps[:, 0]))
+
+
+@pytest.mark.parametrize("place", [-60.0, 0.0, 60.0])
+def test_walls_of_a_cascade_go_on_wherever_its_span_lies(place):
+    walls = {"hub": place, "shroud": place + 40.0}
+
+    def line(name):
+        return SimpleNamespace(values=lambda t: 1e-3 * np.stack([20.0 * t, walls[name] - 2.0 * t], axis=-1))
+
+    found = ClosedChannel(exact=SimpleNamespace(channel=SimpleNamespace(line=line))).flow_path(1e-3, revolved=False)
+    for name, r in walls.items():
+        first, last = getattr(found, name).points[0], getattr(found, name).points[-1]
+        assert first == pytest.approx((-CONTINUATIONS[0] * 20.0, r + CONTINUATIONS[0] * 2.0))
+        assert last == pytest.approx((20.0 * (1.0 + CONTINUATIONS[0]), r - 2.0 - CONTINUATIONS[0] * 2.0))
 
 
 def test_a_section_is_laid_out_by_lengths_on_a_cone():
