@@ -213,6 +213,8 @@ class _Frame:
     """[rad]"""
     shapes: list[SectionShape]
     """at SECTION_SPANS"""
+    points: Reals
+    """(n, 2) beside the one in the middle"""
 
 
 def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: DesignHeader) -> tuple[float, Design]:
@@ -235,7 +237,7 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
             shapes, beside = [each.reversed() for each in shapes[::-1]], beside * [-1.0, 1.0]
         try:
             matches = _matched(kind, shapes[MIDDLE], beside, part)
-            frame = _Frame(plane=plane, turn=turn, shapes=shapes)
+            frame = _Frame(plane=plane, turn=turn, shapes=shapes, points=beside)
             tried += [(match, frame) for match in matches]
         except (DesignError, FitError) as error:
             refusal = error
@@ -249,7 +251,7 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
         if any(frame.plane == each.plane and frame is not each for _, each in blades):
             continue
         try:
-            section = part_of_laws(_along_span(frame.shapes, chosen))
+            section = part_of_laws(_along_span(frame.shapes, _in_place(frame, chosen)))
             design = _blade_of(found, frame, kind.blade, section, like, header)
             blades.append((compared(few.turned(frame.turn), [design], rounds=rounds)[0], frame))
         except (DesignError, FitError) as error:
@@ -332,13 +334,11 @@ def _planes(task: Task, found: ClosedChannel, like: Any, middle: SectionShape) -
     return own if task.bounds else [*own, (UNROLLED, turn)]
 
 
-def _along_span(shapes: Sequence[SectionShape], middle: Match) -> list[Any]:
-    """Parts at places along the span: that of the middle, which was searched, changed as its shapes say.
+def _along_span(shapes: Sequence[SectionShape], part: Any) -> list[Any]:
+    """Parts at places along the span: that of the middle, which was searched, changed as the shapes say.
 
     Angles change by what the first parts of the shapes there and in the middle differ, and lengths by their ratio.
     """
-    design: Any = middle.design
-    part: Any = design.section
     firsts = [first_part(part, shape).parameters() for shape in shapes]
 
     def changed(path: str, value: float, first: float, there: float) -> float:
@@ -362,6 +362,17 @@ def _matched(kind: FitFamily, shape: SectionShape, points: Reals, like: Any) -> 
     tried = compared(task.thinned(TRIAL_POINTS), first_designs(kind, shape, like, header, task))[:CONSIDERED]
     found = [searched(task, each.design, rounds=QUICK_ROUNDS, fading=True) for each in tried]
     return [found[number] for number in _alike(found)]
+
+
+def _in_place(frame: _Frame, middle: Match) -> Any:
+    """The part of a section in the middle, searched again where the closed blade's section stands."""
+    shape, free = frame.shapes[MIDDLE], FreeParameters(free=("section.*",))
+    task = Task(points=frame.points, weights=np.ones(len(frame.points)), free=free, bounds={})
+    start: Any = middle.design
+    x, y = (float(each) for each in shape.start)
+    placed = replace(start, chord=shape.chord, leading_edge_x=x, leading_edge_y=y)
+    found: Any = searched(task, placed, rounds=QUICK_ROUNDS, fading=True).design
+    return found.section
 
 
 def _alike(matches: Sequence[Match]) -> list[int]:
