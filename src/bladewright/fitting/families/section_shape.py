@@ -39,6 +39,8 @@ class SectionShape:
     """(n, 2) of the lower side"""
     edge_radii: tuple[float, float]
     """of the leading and the trailing edge, of the chord; rough where a camber line bends at an edge"""
+    ends_known: bool = False
+    """whether the chord line ends where the points do, as that of a contour"""
 
     @cached_property
     def camber(self) -> Polynomial:
@@ -78,7 +80,12 @@ class SectionShape:
         return float(heights[at]), float(PLACES[at])
 
     def within(self, first: float, last: float) -> "SectionShape":
-        """The same section between places so much of its chord after its leading and before its trailing edge."""
+        """The same section between places so much of its chord after its leading and before its trailing edge.
+
+        It is left as it is where its ends are known.
+        """
+        if self.ends_known:
+            return self
         along = np.array([np.cos(self.stagger), np.sin(self.stagger)])
         start = self.start + first * self.chord * along
         return replace(self, chord=(1.0 - first - last) * self.chord, start=start)

@@ -215,7 +215,8 @@ def first_designs(
 ) -> Iterator[Design]:
     """The designs that the kinds of a family begin as near a section, or those of the structure of a given part.
 
-    A blunt edge begins inside the points, by half its thickness: one that stands out is nearest to none, and stays.
+    A blunt edge begins inside the points, by half its thickness, where its place is not known: one that stands out is
+    nearest to none, and stays.
     """
     for part in kind.first_parts(shape, like):
         inside = shape

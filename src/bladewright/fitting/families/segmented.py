@@ -72,6 +72,7 @@ def contour_shape(points: Reals) -> SectionShape | None:
         upper=upper,
         lower=lower,
         edge_radii=(float(np.clip(-1.0 / bend, 1e-3, 0.2)), 1e-3 if round_end else 0.0),
+        ends_known=True,
     )
 
 
