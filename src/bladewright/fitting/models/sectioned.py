@@ -86,9 +86,9 @@ class PlanarModel(SectionModel):
         lengths = design.chord, design.leading_edge_x, design.leading_edge_y
         chord, x, y = (np.asarray(value)[..., None] * UNITS[design.length_unit] for value in lengths)
         cosine, sine = np.cos(turn), np.sin(turn)
-        nets = []
+        nets, first, last = [], outline.leading_edge, outline.trailing_edge
         for name, points in zip(("upper", "lower"), outline.points(greville(self.knots, DEGREE)[3:-3]), strict=True):
-            edges = np.broadcast_arrays(*getattr(outline.leading_edge, name), *getattr(outline.trailing_edge, name))
+            edges = np.broadcast_arrays(*getattr(first, name), *getattr(last, name))
             start, end = EdgeDerivatives(*edges[:3]), EdgeDerivatives(*edges[3:])
             net = interpolated_along_u(np.swapaxes(points, -3, -2), start, end, self.knots)[..., 0, :]
             a, b = net[..., 0], net[..., 1]

@@ -204,18 +204,22 @@ class MeanLineOutline(Outline):
     @property
     def leading_edge(self) -> Edge:
         """Round: half the square of the thickness's first coefficient, times the cosine of the mean line there."""
-        return self._edge(0.0, "round")
+        return self._edge(0, "round")
 
     @property
     def trailing_edge(self) -> Edge:
         """Sharp, blunt or round, as in the design."""
-        return self._edge(1.0, self.end)
+        return self._edge(-1, self.end)
 
     @property
     def joints(self) -> tuple[Joint, ...]:
         """The mean line's joint, always at the same s."""
         return () if self.mean_line.joint is None else (Joint(JOINT, self.mean_line.joint_derivatives),)
 
-    def _edge(self, s: float, kind: TrailingEdge) -> Edge:
-        upper, lower = (EdgeDerivatives.of_side(side) for side in self._sides(np.array([s]), 2))
+    @cached_property
+    def _sides_at_edges(self) -> list[Array]:
+        return self._sides(np.array([0.0, 1.0]), 2)
+
+    def _edge(self, number: int, kind: TrailingEdge) -> Edge:
+        upper, lower = (EdgeDerivatives.of_side(side[..., [number], :, :]) for side in self._sides_at_edges)
         return Edge(kind=kind, upper=upper, lower=lower)
