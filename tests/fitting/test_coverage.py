@@ -82,6 +82,17 @@ def test_a_long_way_without_a_point_is_told_with_its_place(name, upper, lower, p
     assert all(way > 0.1 * match.model.chord for way, _ in found)
 
 
+def test_a_side_without_any_point_is_one_long_way():
+    design = DESIGNS["turbine-section"]
+    points = np.real(design.build().curves["upper"](np.linspace(1e-3, 1.0 - 1e-3, 200)))
+    free = free_parameters_of(None, None, started=True)
+    match = searched(Task(points=points, weights=np.ones(200), free=free, bounds={}), design, rounds=0)
+    assert not np.any(match.state.footpoints.side == 1)
+    ((way, place),) = bare_stretches(match)
+    assert way > match.model.chord
+    assert place.startswith("lower side from u = 0.0")
+
+
 def test_rows_of_points_across_the_lines_of_a_blade_leave_no_part_out():
     """Near the leading edge the row of a fifth of the span is in the next one: the edge between them is shown."""
     design = DESIGNS["aachen-stator"]

@@ -165,7 +165,7 @@ def bare_stretches(match: Match) -> list[tuple[float, str]]:
         at = np.interp(whole - middle if side else middle, (upper, lower)[side], u)
         beside = feet.points if place in EDGE_PARAMETERS else feet.points[feet.side == side]
         aside = beside - _places(sides, np.array([side]), np.array([at]), np.array([v]))
-        if np.min(np.sum(aside**2, axis=-1)) < (FREE_GAP * (last - first)) ** 2:
+        if np.min(np.sum(aside**2, axis=-1), initial=np.inf) < (FREE_GAP * (last - first)) ** 2:
             continue
         if place not in EDGE_PARAMETERS or match.problem.cloud_residuals.overhang.looks_at(EDGE_PARAMETERS[place]):
             where = "" if sides[0].control_points.shape[-1] == 2 else f", v = {v:.2g}"
