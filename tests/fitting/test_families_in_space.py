@@ -205,8 +205,7 @@ def test_parts_along_the_span_are_the_searched_one_where_shapes_are_alike_and_tu
     shapes = [
         replace(shape, stagger=shape.stagger + np.radians(turn)) for turn in (-2.0, -1.0, -0.5, 0.0, 1.0, 2.0, 4.0)
     ]
-    match = SimpleNamespace(design=SimpleNamespace(section=searched))
-    parts = blades._along_span(shapes, match)
+    parts = blades._along_span(shapes, searched)
     assert parts[3].parameters() == pytest.approx(searched.parameters())
     assert [each.stagger_angle for each in parts] == pytest.approx([28.0, 29.0, 29.5, 30.0, 31.0, 32.0, 34.0])
     assert {each.wedge_angle for each in parts} == {9.5}
@@ -251,18 +250,26 @@ def test_matches_are_compared_by_their_outliers_too_but_by_none_more_than_is_far
     assert _alike([alike, near, stood_in([2.4] * 20)]) == [0, 1]
 
 
-@pytest.mark.parametrize(("missed", "taken"), [(False, ["annular"]), (True, ["annular", "linear"])])
-def test_a_blade_that_is_missed_around_the_axis_is_sought_in_a_cascade(monkeypatch, missed, taken):
+@pytest.mark.parametrize(
+    ("missed", "trial", "taken"),
+    [(False, 1.0, ["annular"]), (True, 2.9, ["annular", "linear"]), (True, 3.1, ["annular"])],
+)
+def test_a_blade_that_is_missed_around_the_axis_is_sought_in_a_cascade_that_begins_about_as_near(
+    monkeypatch, missed, trial, taken
+):
     tried = []
 
-    def selected(task, _kind, _start, _like, header, _target):
+    def first(_task, _kind, _like, header):
         arrangement = header.arrangement or "annular"
-        tried.append((arrangement, task.turn))
-        found = SimpleNamespace(
-            design=SimpleNamespace(arrangement=arrangement), noise_estimate=SimpleNamespace(correlation=0.0)
-        )
-        return task, found, arrangement
+        return 0.0, SimpleNamespace(arrangement=arrangement), {"annular": 1.0, "linear": trial}[arrangement]
 
+    def selected(task, design, _like, _target, *, guessed):
+        assert guessed
+        tried.append((design.arrangement, task.turn))
+        return SimpleNamespace(design=design, noise_estimate=SimpleNamespace(correlation=0.0)), design.arrangement
+
+    monkeypatch.setattr(blades, "_first_blade", first)
+    monkeypatch.setattr(blades, "misfits", lambda trials: trials)
     monkeypatch.setattr(blades, "_selected", selected)
     monkeypatch.setattr(blades, "is_far", lambda *_: missed)
     monkeypatch.setattr(blades, "criterion", lambda match, _: match.design.arrangement == "annular")
@@ -278,11 +285,11 @@ def test_a_blade_that_is_missed_around_the_axis_is_sought_in_a_cascade(monkeypat
 def test_a_given_arrangement_is_the_only_one_and_all_refusals_are_one(monkeypatch):
     tried = []
 
-    def refused(_task, _kind, _start, _like, header, _target):
+    def refused(_task, _kind, _like, header):
         tried.append(header.arrangement)
         raise FitError(f"refused as {header.arrangement}")
 
-    monkeypatch.setattr(blades, "_selected", refused)
+    monkeypatch.setattr(blades, "_first_blade", refused)
     task = Task(points=cloud(), weights=np.ones(len(cloud())), free=FreeParameters(), bounds={})
     for arrangement, known in (("annular", ["annular"]), (None, [None, "linear"])):
         tried.clear()

@@ -91,10 +91,17 @@ def matched_blade(
     own = start is None and like is None
     if own and isinstance(task.free, FreeParameters):
         task = replace(task, free=replace(task.free, walls=True))
-    tried, refusals = list[tuple[Task, Match, str]](), list[Exception]()
+    tried, refusals, trials = list[tuple[Task, Match, str]](), list[Exception](), list[Match]()
     for turned, row in _arranged(task, header, own=own):
+        there, first = turned, start
         try:
-            tried.append(_selected(turned, kind, start, like, row, target))
+            if start is None:
+                turn, first, trial = _first_blade(turned, kind, like, row)
+                there, trials = turned.turned(turn), [*trials, trial]
+                # short searches tell what is so much further off
+                if tried and misfits(trials)[-1] > PROMISING * misfits(trials)[0]:
+                    break
+            tried.append((there, *_selected(there, first, like, target, guessed=start is None)))
         except (DesignError, FitError) as error:
             refusals.append(error)
             continue
@@ -121,18 +128,13 @@ def _arranged(task: Task, header: DesignHeader, *, own: bool) -> Iterator[tuple[
         yield task.turned(UPRIGHT if spans_along_y(task.points) else 0.0), replace(header, arrangement="linear")
 
 
-def _selected(
-    task: Task, kind: FitFamily, start: Any, like: Any, header: DesignHeader, target: MatchTarget
-) -> tuple[Task, Match, str]:
-    """The match of one arrangement, what was sought with its points turned, and why it ends where no target is met."""
-    first, structure = start, None if like is None else structure_of(like)
-    if start is None:
-        turn, first = _first_blade(task, kind, like, header)
-        task = task.turned(turn)
+def _selected(task: Task, first: Any, like: Any, target: MatchTarget, *, guessed: bool) -> tuple[Match, str]:
+    """The match that begins with a blade, of the structure of `like` if any, and why it ends where no target is met."""
+    structure = None if like is None else structure_of(like)
     first = first if structure is None else reshaped(first, structure)
     first = task.free.applied(first) if isinstance(task.free, FreeParameters) else first
     check_bounds(first, task.free(first), task.bounds)
-    return task, *selected_match(task, first, target, like=structure, guessed=start is None)
+    return selected_match(task, first, target, like=structure, guessed=guessed)
 
 
 def _through_points(task: Task, match: Match, target: MatchTarget) -> tuple[Match, str] | None:
@@ -163,11 +165,12 @@ def _shapes_of(part: Any) -> list[SectionShape]:
     ]
 
 
-def _first_blade(task: Task, kind: FitFamily, like: Any, header: DesignHeader) -> tuple[float, Design]:
-    """The family's first blade, from the sections of a closed blade of the unified family, and the turn of its frame.
+def _first_blade(task: Task, kind: FitFamily, like: Any, header: DesignHeader) -> tuple[float, Design, Match]:
+    """The turn of a frame, and the family's first blade in it, from the sections of a closed one of the unified family.
 
-    That is one that is searched, or where the family has no blade near it the one that the search began with, whose
-    edges miss no wall. Its sections and its channel are all that is taken, so that it need not be fit to be built.
+    The short search that it was taken from comes with it. The closed blade is one that is searched, or where the family
+    has no blade near it the one that the search began with, whose edges miss no wall. Its sections and its channel are
+    all that is taken, so that it need not be fit to be built.
     """
     begun = first_blade(task.thinned(THOROUGH_POINTS).points, **header.known(like))
     task = task.turned(begun.turn)
@@ -181,8 +184,8 @@ def _first_blade(task: Task, kind: FitFamily, like: Any, header: DesignHeader) -
     refusals = list[Exception]()
     for blade in (closed, begun.design):
         try:
-            turn, first = _first(task, model_of(blade).shape(blade), kind, like, header)
-            return begun.turn + turn, first
+            turn, first, trial = _first(task, model_of(blade).shape(blade), kind, like, header)
+            return begun.turn + turn, first, trial
         except (DesignError, FitError) as error:
             refusals.append(error)
     raise refusals[0]
@@ -217,8 +220,10 @@ class _Frame:
     """(n, 2) beside the one in the middle"""
 
 
-def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: DesignHeader) -> tuple[float, Design]:
-    """The blade of the family nearest to the points whose sections are those of a closed blade; the turn of its frame.
+def _first(
+    task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: DesignHeader
+) -> tuple[float, Design, Match]:
+    """The turn of a frame, the blade of the family in it whose sections are a closed blade's, and its short search.
 
     Planes and kinds of section that those in the middle hardly tell apart are told apart by a short search of whole
     blades, of each plane with theta counted from where these meet it best.
@@ -261,11 +266,11 @@ def _first(task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: D
     best, frame = blades[_alike([match for match, _ in blades])[0]]
     nearest: Any = best.design
     if not frame.turn:
-        return 0.0, nearest
+        return 0.0, nearest, best
     # the leading edge is better known than by the closed blade
     theta = float(np.real(Span(np.array([0.5])).values(nearest.leading_edge_theta)[0]))
     law = np.array(law_points(nearest.leading_edge_theta)) - theta
-    return float(frame.turn - np.radians(theta)), replace(nearest, leading_edge_theta=tuple(law.tolist()))
+    return float(frame.turn - np.radians(theta)), replace(nearest, leading_edge_theta=tuple(law.tolist())), best
 
 
 def _blade_of(
