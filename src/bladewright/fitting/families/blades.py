@@ -371,7 +371,7 @@ def _matched(kind: FitFamily, shape: SectionShape, points: Reals, like: Any) -> 
 
 def _in_place(frame: _Frame, middle: Match) -> Any:
     """The part of a section in the middle, searched again where the closed blade's section stands."""
-    shape, free = frame.shapes[MIDDLE], FreeParameters(free=("section.*",))
+    shape, free = frame.shapes[MIDDLE], FreeParameters(fixed=("chord", "leading_edge_x", "leading_edge_y"))
     task = Task(points=frame.points, weights=np.ones(len(frame.points)), free=free, bounds={})
     start: Any = middle.design
     x, y = (float(each) for each in shape.start)
