@@ -71,6 +71,9 @@ CONTOUR_POINTS = 32
 ALIKE = 1.1
 """ratio of the misfits of two kinds of section in the middle, such as with a round and with a blunt edge, up to which
 short searches of whole blades tell them apart: the closed blade has round edges (design/matching.md)"""
+PLANES_ALIKE, BLADES_ALIKE = 1.5, 1.25
+"""ratio of misfits in the middle up to which a plane may be the right one, and of those of whole blades up to which the
+one nearest in the middle is kept (design/matching.md)"""
 CONFORMAL, UNROLLED = "m'-theta", "m-r*theta"
 """planes of stream surfaces in which sections are tried"""
 SAME_RADIUS = 1.02
@@ -248,7 +251,7 @@ def _first(
             refusal = error
     few, blades = task.thinned(QUICK_POINTS), list[tuple[Match, _Frame]]()
     off = misfits([match for match, _ in tried]) if tried else []
-    promising = [number for number in np.argsort(off, kind="stable") if off[number] <= PROMISING * min(off)]
+    promising = [number for number in np.argsort(off, kind="stable") if off[number] <= PLANES_ALIKE * min(off)]
     # of one nothing is to be decided
     rounds = TRIAL_ROUNDS if len(promising) > 1 else 1
     for number in promising:
@@ -263,7 +266,7 @@ def _first(
             refusal = error
     if not blades:
         raise refusal
-    best, frame = blades[_alike([match for match, _ in blades])[0]]
+    best, frame = blades[_alike([match for match, _ in blades], BLADES_ALIKE)[0]]
     nearest: Any = best.design
     if not frame.turn:
         return 0.0, nearest, best
@@ -380,7 +383,7 @@ def _in_place(frame: _Frame, middle: Match) -> Any:
     return found.section
 
 
-def _alike(matches: Sequence[Match]) -> list[int]:
+def _alike(matches: Sequence[Match], ratio: float = ALIKE) -> list[int]:
     """The numbers of those that are hardly worse than the best, in their order."""
     off = misfits(matches)
-    return [number for number, each in enumerate(off) if each <= ALIKE * min(off)]
+    return [number for number, each in enumerate(off) if each <= ratio * min(off)]
