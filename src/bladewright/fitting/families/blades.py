@@ -259,7 +259,7 @@ def _first(
         if any(frame.plane == each.plane and frame is not each for _, each in blades):
             continue
         try:
-            section = part_of_laws(_along_span(frame.shapes, _in_place(frame, chosen)))
+            section = part_of_laws(_along_span(frame.shapes, _in_place(kind, frame, chosen.design)))
             design = _blade_of(found, frame, kind.blade, section, like, header)
             blades.append((compared(few.turned(frame.turn), [design], rounds=rounds)[0], frame))
         except (DesignError, FitError) as error:
@@ -372,14 +372,17 @@ def _matched(kind: FitFamily, shape: SectionShape, points: Reals, like: Any) -> 
     return [found[number] for number in _alike(found)]
 
 
-def _in_place(frame: _Frame, middle: Match) -> Any:
-    """The part of a section in the middle, searched again where the closed blade's section stands."""
-    shape, free = frame.shapes[MIDDLE], FreeParameters(fixed=("chord", "leading_edge_x", "leading_edge_y"))
-    task = Task(points=frame.points, weights=np.ones(len(frame.points)), free=free, bounds={})
-    start: Any = middle.design
-    x, y = (float(each) for each in shape.start)
-    placed = replace(start, chord=shape.chord, leading_edge_x=x, leading_edge_y=y)
-    found: Any = searched(task, placed, rounds=QUICK_ROUNDS, fading=True).design
+def _in_place(kind: FitFamily, frame: _Frame, middle: Any) -> Any:
+    """The part of the structure of one that was searched in the middle, searched where the closed blade's stands."""
+    task = Task(
+        points=frame.points,
+        weights=np.ones(len(frame.points)),
+        free=FreeParameters(fixed=("chord", "leading_edge_x", "leading_edge_y")),
+        bounds={},
+    )
+    header = DesignHeader(name="section", length_unit="m")
+    first = next(iter(first_designs(kind, frame.shapes[MIDDLE], middle.section, header, task)))
+    found: Any = searched(task, first, rounds=QUICK_ROUNDS, fading=True).design
     return found.section
 
 
