@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 
 from bladewright import cad
+from bladewright.blade.native.end_faces import WallSurface, followed
+from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.refine import inserted
 from bladewright.section.profiles.flat_plate import FlatPlate
 from machines.sectioned import DIFFUSER, VANE
 
@@ -52,3 +55,17 @@ def test_a_cap_never_turns_over(blade):
     for name in ("hub", "shroud"):
         normals = blade.extended(0.1).surfaces[name].normal(at[:, None], at)
         assert np.min(normals @ normals[20, 20]) > 0.99
+
+
+def test_an_end_is_followed_past_knots_that_differ_by_their_rounding():
+    line = Curve(control_points=np.array([[0.0, 0.2], [0.1, 0.2]]), knots=np.array([0.0, 0.0, 1.0, 1.0]), degree=1)
+    wall = WallSurface(meridian=line, inner=np.empty(0), revolved=False, low=-0.1, high=0.1)
+    x = np.linspace(0.0, 0.1, 6)
+    points = np.stack([x, 4.0 * x * (0.1 - x), np.full(6, 0.2)], axis=-1)
+    plain = Curve(control_points=points, knots=np.repeat([0.0, 1.0], 6), degree=5)
+    end = inserted(plain, [0.58] * 4 + [float(np.nextafter(0.58, 1.0))])
+    places = np.linspace(0.0, 1.0, 11)
+    near = places, places, np.real(plain(places))[:, 1]
+    found = followed(wall, end, near, 0.1)
+    t = np.linspace(0.0, 1.0, 101)
+    assert np.real(wall.surface(*found(t).T)) == pytest.approx(np.real(plain(t)), abs=1e-12)

@@ -11,7 +11,7 @@ from bladewright.errors import DesignError
 from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import Array, angle, concatenated, dot, length
 from bladewright.numerics.roots import level_crossings
-from bladewright.nurbs.basis import Reals, greville, knots_with_joints
+from bladewright.nurbs.basis import JOINT_TOLERANCE, Reals, greville, knots_with_joints
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import piece, reparametrised
 from bladewright.nurbs.domain import reversed as run_back
@@ -101,8 +101,10 @@ def followed(wall: WallSurface, curve: Curve, near: Near, chord: float, knots: R
         return interpolated(exact(sites), sites, degree=curve.degree, knots=knots)
     own = knots_with_joints(curve.knots, curve.degree, _joints(wall, curve, near))
     spans = np.unique(own)
+    # knots that differ by their rounding have nothing between them
+    wide = np.diff(spans) > JOINT_TOLERANCE * (spans[-1] - spans[0])
     for pieces in (2, 3, 4, 6, 8):
-        added = [spans[:-1] + np.diff(spans) * k / pieces for k in range(1, pieces)]
+        added = [(spans[:-1] + np.diff(spans) * k / pieces)[wide] for k in range(1, pieces)]
         knots = np.sort(np.concatenate([own, *added]))
         sites = greville(knots, curve.degree)
         found = interpolated(exact(sites), sites, degree=curve.degree, knots=knots)
