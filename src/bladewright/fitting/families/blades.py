@@ -102,7 +102,8 @@ def matched_blade(
                 turn, first, trial = _first_blade(turned, kind, like, row)
                 there, trials = turned.turned(turn), [*trials, trial]
                 # short searches tell what is so much further off
-                if tried and misfits(trials)[-1] > PROMISING * misfits(trials)[0]:
+                off = misfits(trials)
+                if tried and off[-1] > PROMISING * off[0]:
                     break
             tried.append((there, *_selected(there, first, like, target, guessed=start is None)))
         except (DesignError, FitError) as error:
@@ -373,7 +374,10 @@ def _matched(kind: FitFamily, shape: SectionShape, points: Reals, like: Any) -> 
 
 
 def _in_place(kind: FitFamily, frame: _Frame, middle: Any) -> Any:
-    """The part of the structure of one that was searched in the middle, searched where the closed blade's stands."""
+    """The part of a section in the middle, searched again with the edges where the closed blade's section has them.
+
+    Its chord and place were free when kinds of section were compared; those of the blade are the closed blade's.
+    """
     task = Task(
         points=frame.points,
         weights=np.ones(len(frame.points)),

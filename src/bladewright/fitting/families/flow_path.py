@@ -67,8 +67,8 @@ class ClosedChannel:
         lines = [self.values(name, CURVE_PLACES) for name in WALLS]
         for longest in CONTINUATIONS:
             # a cascade has no axis, and its span may lie anywhere
-            most = [_shares_off_axis(line, longest) for line in lines] if revolved else [longest]
-            shares = np.broadcast_to(np.min(most, axis=0), 2)
+            most = [np.full(2, longest)] if not revolved else [_shares_off_axis(line, longest) for line in lines]
+            shares = np.min(most, axis=0)
             hub, shroud = (ThroughPoints(points=_points(_wall(line, shares), metre)) for line in lines)
             path = FlowPath(hub=hub, shroud=shroud)
             with suppress(DesignError):
