@@ -23,6 +23,8 @@ def solved(matrix: NDArray[np.float64], values: Array) -> Array:
 def banded_solved(matrix: NDArray[np.float64], values: Array, width: int) -> Array:
     """The same for a large matrix whose entries lie within `width` places of its diagonal, by elimination there."""
     count = len(matrix)
+    # a small matrix is narrower than its band
+    width = min(width, max(count - 1, 0))
     bands = np.zeros((2 * width + 1, count))
     for place in range(-width, width + 1):
         bands[width - place, max(place, 0) : count + min(place, 0)] = np.diagonal(matrix, place)
