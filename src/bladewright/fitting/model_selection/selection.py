@@ -22,6 +22,7 @@ from bladewright.fitting.matching.search import (
     searched,
     without_false_outliers,
 )
+from bladewright.fitting.model_selection.clustering import nearest_by_clustering
 from bladewright.fitting.model_selection.edges import from_other_edges, nearest_from_other_edges, with_sharp_edges
 from bladewright.fitting.model_selection.elimination import reweighted
 from bladewright.fitting.model_selection.structure import Structure, reshaped, structure_of
@@ -62,6 +63,7 @@ def selected_match(
     few = replace(few, preliminary=guessed and task.dimension == 3)
     found = searched(few, first, noise=noise, min_reduction=ROUGH_REDUCTION)
     found = nearest_from_other_edges(few, found, GUESS_NOISE) if guessed else found
+    found = nearest_by_clustering(few, found) if guessed and like is None else found
     if target.structured and target.tolerance is None:
         return _of_structure(several, many, found, like if guessed else None), ""
     held = target.parameters is not None and bool(corner_radii(first)) and found.ends.in_rows(found.model.chord)
