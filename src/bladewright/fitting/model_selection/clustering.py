@@ -19,7 +19,7 @@ from bladewright.fitting.model_selection.reshaping import with_feasible_edges
 
 WORTH_SEEKING = 0.9
 """ratio of the misfit that another clustering is predicted to leave, to a match's own, below which it is sought: of
-first matches whose clustering is the cloud's own 0.91 to 1, of five of seven others 0.75 to 0.87
+first matches whose clustering is the cloud's own 0.91 to 1, of four of eight others 0.77 to 0.87
 (design/matching.md)."""
 CLUSTERING_STEP, CLUSTERING_TOLERANCE = 1e-3, 0.03
 """step by which the misfit's change is told, and how closely the clustering is sought: a blade whose clustering was
