@@ -10,6 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from bladewright.blade.exact.sectioned import exact_sectioned_blade
+from bladewright.section.profiles.naca4 import Naca4
 from bladewright.section.profiles.points import PointsProfile
 from bladewright.section.smoothness import smoothness
 from bladewright.views.distributions import draw_smoothness, jump_rows, logarithmic_beyond
@@ -287,3 +288,11 @@ def test_smoothness_of_a_blade_is_that_of_its_exact_sections(impeller):
     assert found.to_dict() == smoothness(impeller.section(0.5)).to_dict()
     assert found.camber.continuous == (True, True)
     assert [line.continuous[0] for line in found.lines] == [True] * 3
+
+
+def test_the_trailing_edge_of_a_published_profile_is_measured_in_its_maximum_thickness():
+    profile = replace(VANE, section=Naca4(thickness=0.12, trailing_edge="blunt", trailing_edge_thickness=0.02))
+    (edge,) = (each for each in constants_of(profile) if each.name == "trailing edge thickness")
+    assert (edge.values, edge.unit) == ((2.0,), "% of maximum")
+    varying = panels_of(profile.changed({"section.trailing_edge_thickness": (0.02, 0.03)}))
+    assert [each.abscissa for each in varying if "trailing edge thickness" in each.laws] == ["thickness [% of maximum]"]

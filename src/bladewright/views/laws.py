@@ -6,12 +6,15 @@ from typing import Any, NamedTuple, get_args, get_origin, get_type_hints
 
 from bladewright.designs import Law, Part, Stations
 from bladewright.section.laws import law_points, places_of
+from bladewright.section.profiles.profile import PublishedProfile
 
 MAX_CONTROL_POINTS = 16
 """Most control points along the chord of a row of laws that gets a panel. A legend of more covers other panels; such
 rows are the points of a given profile, which say nothing as laws."""
 VALUES_ACROSS = 5
 """Values of a row of constants on a line."""
+OF_MAXIMUM = "maximum thickness"
+"""What the trailing edge of a published profile is measured in."""
 
 
 class Panel(NamedTuple):
@@ -54,6 +57,7 @@ _KINDS = (
     _Kind("Tangents", "length [% of chord]", 100.0, lambda name, _: "_tangent_" in name),
     _Kind("Edge radii", "radius [% of {length}]", 100.0, lambda name, _: name.endswith("_edge_radius")),
     _Kind("Half thickness", "control point [% of {length}]", 100.0, lambda name, _: name.startswith("thickness_")),
+    _Kind("Trailing edge", "thickness [% of maximum]", 100.0, lambda _, unit: unit == OF_MAXIMUM),
     _Kind("Thickness", "thickness [% of chord]", 100.0, lambda name, _: name.endswith("thickness")),
     _Kind("Weights", "control point [-]", 1.0, lambda name, _: name.startswith("weights_")),
     _Kind("Places", "place [% of chord]", 100.0, lambda name, _: name.endswith(("_at", "_position"))),
@@ -175,6 +179,8 @@ def _laws(part: Part) -> tuple[list[_Single], list[_Row]]:
     hints, single, rows = get_type_hints(type(part)), list[_Single](), list[_Row]()
     for each in fields(part):
         value, unit, hint = getattr(part, each.name), each.metadata.get("unit"), hints[each.name]
+        if isinstance(part, PublishedProfile) and each.name == "trailing_edge_thickness":
+            unit = OF_MAXIMUM
         if unit is None and isinstance(value, Part):
             inner_single, inner_rows = _laws(value)
             single += inner_single
