@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
-from scipy.special import ndtri
-from scipy.stats import binomtest
+from scipy.special import bdtrc, ndtri
 
 from bladewright.fitting.clouds.thinning import even_subset, random_subset
 from bladewright.fitting.matching.footpoints import BETWEEN_EDGES, EDGE_PARAMETERS, Footpoints
@@ -208,7 +207,7 @@ def crowded_at_edges(outliers: NDArray[np.bool_], footpoints: Footpoints) -> dic
         shares = (inside & at_edge, 0.5 * float(np.mean(at_edge))), (outliers & at_edge, float(np.mean(around)))
         for crowded, share in shares:
             count = int(np.count_nonzero(crowded))
-            if count and binomtest(count, off, share, alternative="greater").pvalue < SIGNIFICANCE:
+            if count and bdtrc(count - 1, off, share) < SIGNIFICANCE:
                 found[name] = crowded
     return found
 
