@@ -5,6 +5,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, fields, is_dataclass, replace
+from functools import lru_cache
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
 from bladewright.errors import DesignError
@@ -76,7 +77,7 @@ class Part:
         names = [each.name for each in fields(self)]
         put: dict[str, list[_Change]] = {}
         for where, what in ({path: value} if isinstance(path, str) else path).items():
-            name, *rest = _steps(where) or [""]
+            name, *rest = _steps(where) or ("",)
             name = str(name)
             if name not in names:
                 raise DesignError(unknown(where, name, names))
@@ -225,7 +226,9 @@ def _leaves_of(node: Any, path: str) -> Iterator[tuple[str, Any]]:
 _STEP = re.compile(r"\.?([A-Za-z_]\w*)|\[(-?\d+)\]")
 
 
-def _steps(path: str) -> list[str | int]:
+@lru_cache(maxsize=4096)
+def _steps(path: str) -> tuple[str | int, ...]:
+    """The names and numbers that lead along a path."""
     steps: list[str | int] = []
     position = 0
     while position < len(path):
@@ -235,10 +238,10 @@ def _steps(path: str) -> list[str | int]:
             raise DesignError(f"{message} or channel.hub[0].x")
         steps.append(match[1] or int(match[2]))
         position = match.end()
-    return steps
+    return tuple(steps)
 
 
-_Change = tuple[list[str | int], Any, str]
+_Change = tuple[Sequence[str | int], Any, str]
 """steps from a node, the value there, and the whole path"""
 
 
@@ -279,9 +282,9 @@ def _with(node: Any, changes: list[_Change], made: Callable[..., Any]) -> Any:
 def _check_step(node: Any, step: str | int, path: str) -> None:
     """Refuse a step that leads nowhere."""
     if isinstance(node, Part | Point) and isinstance(step, str):
-        names = [*Point._fields] if isinstance(node, Point) else [each.name for each in fields(node)]
+        names = Point._fields if isinstance(node, Point) else node.__dataclass_fields__
         if step not in names:
-            raise DesignError(unknown(path, step, names))
+            raise DesignError(unknown(path, step, [*names]))
         return
     if isinstance(node, tuple) and isinstance(step, int):
         if not -len(node) <= step < len(node):

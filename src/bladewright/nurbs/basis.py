@@ -19,8 +19,9 @@ JOINT_TOLERANCE = 1e-9
 and a knot so near is the same one but for rounding."""
 
 
+@lru_cache(maxsize=256)
 def uniform_knots(count: int, degree: int) -> Reals:
-    """Clamped uniform knots (count + degree + 1,) over [0, 1] for `count` control points.
+    """Clamped uniform knots (count + degree + 1,) over [0, 1] for `count` control points, read-only.
 
     Raises GeometryError where there are fewer control points than degree + 1.
     """
@@ -30,7 +31,9 @@ def uniform_knots(count: int, degree: int) -> Reals:
             "lower the degree or give more control points"
         )
     inner = np.linspace(0.0, 1.0, count - degree + 1)
-    return np.concatenate([np.zeros(degree), inner, np.ones(degree)])
+    knots = np.concatenate([np.zeros(degree), inner, np.ones(degree)])
+    knots.setflags(write=False)
+    return knots
 
 
 def greville(knots: Reals, degree: int) -> Reals:

@@ -59,15 +59,21 @@ class StreamLines:
 
     def position(self, u: Array, order: int = 0) -> Array:
         """(x, r) or derivatives by u (..., m, k, 2) at u (..., m, k) or (k,)."""
-        u = np.broadcast_to(u, np.broadcast_shapes((*self.starts.shape[:-1], 1), np.shape(u)))
-        panel = self._panel(u)
-        t = u - (self.panels[panel] + self.panels[panel + 1]) / 2.0
-        return np.stack([_horner(_rows_of(self.powers[..., i], panel), t, order) for i in (0, 1)], axis=-1)
+        return _points(*self._polynomials(u), order)
 
     def densities(self, u: Array) -> tuple[Array, Array]:
         """da/du and d2a/du2 (..., m, k) at u (..., m, k) or (k,)."""
-        position, slope, bend = (self.position(u, order) for order in range(3))
+        polynomials = self._polynomials(u)
+        position, slope, bend = (_points(*polynomials, order) for order in range(3))
         return self.mapping.density(position, slope), self.mapping.density_slope(position, slope, bend)
+
+    def _polynomials(self, u: Array) -> tuple[Array, Array]:
+        """Coefficients (n, 2, ..., m, k) of (x, r) at u (..., m, k) or (k,), and the powers' base (..., m, k) there."""
+        u = np.broadcast_to(u, np.broadcast_shapes((*self.starts.shape[:-1], 1), np.shape(u)))
+        panel = self._panel(u)
+        rows = _rows_of(self.powers.reshape(*self.powers.shape[:-2], -1), panel)
+        batch = (1,) * (u.ndim + 1 - rows.ndim)
+        return rows.reshape(-1, 2, *batch, *rows.shape[1:]), u - (self.panels[panel] + self.panels[panel + 1]) / 2.0
 
     def rows(self, which: list[int]) -> "StreamLines":
         """Some of the stream lines, by their number along the span."""
@@ -284,6 +290,11 @@ def _shared(panels: NDArray[np.intp]) -> NDArray[np.intp]:
 def _first(coefficients: Array) -> Array:
     """Coefficients (..., n) as (n, ...)."""
     return coefficients.transpose(-1, *range(coefficients.ndim - 1))
+
+
+def _points(powers: Array, t: Array, order: int) -> Array:
+    """Points or derivatives (..., 2) at t (...) of polynomials with coefficients (n, 2, ...)."""
+    return np.ascontiguousarray(np.moveaxis(_horner(powers, t, order), 0, -1))
 
 
 def _horner(powers: Array, t: Array, order: int) -> Array:

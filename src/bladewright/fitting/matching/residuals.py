@@ -8,7 +8,7 @@ are exact.
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import chain, groupby
 
 import numpy as np
@@ -164,6 +164,13 @@ class PlacedCloud:
 
     shape: ModelShape
     footpoints: Footpoints
+    _located: dict[WallPoints, tuple[Reals, Reals, Reals]] = field(default_factory=dict)
+
+    def located(self, wall: WallPoints) -> tuple[Reals, Reals, Reals]:
+        """What `WallPoints.located` finds on the shape, kept."""
+        if wall not in self._located:
+            self._located[wall] = wall.located(self.shape.exact)
+        return self._located[wall]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -186,7 +193,7 @@ class CloudResiduals:
         """All residuals (m,); those of the points (n,) along their normals come first."""
         footpoints, shape = state.footpoints, state.shape
         past = np.sum(footpoints.miss * footpoints.beyond, axis=-1)
-        walls = [self._of_wall(wall) * wall.located(shape.exact)[2] for wall in self.ends.walls.values()]
+        walls = [self._of_wall(wall) * state.located(wall)[2] for wall in self.ends.walls.values()]
         edges = self._of_edge * np.maximum(self.overhang.excess(self.overhang.edges(shape.sides)), 0.0)
         rows = [self.roots * footpoints.heights, (self.roots * past)[self.ends.near], *walls, edges]
         return np.concatenate(rows) / self.model.chord
@@ -197,7 +204,7 @@ class CloudResiduals:
         every, edges = np.split(self.model.along(shape, *self.places(state), paths), [-len(self.overhang.u)])
         blocks = [every]
         for wall in self.ends.walls.values():
-            t, normal, _ = wall.located(shape.exact)
+            t, normal, _ = state.located(wall)
             blocks.append(-self._of_wall(wall) * np.einsum("nkd,nd->nk", wall.rates(shape, t, paths), normal))
         return np.concatenate([*blocks, edges]) / chord
 
@@ -208,7 +215,7 @@ class CloudResiduals:
         blocks = [np.einsum("nd,ndk->nk", *each) for each in zip(directions, (rates, rates[near]), strict=True)]
         exact = state.shape.exact
         for wall in self.ends.walls.values():
-            across = self._of_wall(wall) * wall.located(exact)[1]
+            across = self._of_wall(wall) * state.located(wall)[1]
             blocks.append(np.einsum("nd,ndk->nk", across, wall.motion_rates(exact, self.points, rates)))
         return np.concatenate(blocks) / self.model.chord
 

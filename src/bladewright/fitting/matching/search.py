@@ -6,6 +6,7 @@ search in exact data ends free of it. Knots, outliers and what lies at the ends 
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -179,7 +180,7 @@ class Match:
         """Mean distance of all points except those on end faces, outliers included [m]."""
         return float(np.mean(self.state.footpoints.distances[~self.ends.on_end_face]))
 
-    @property
+    @cached_property
     def misfit(self) -> float:
         """Root mean square of all residuals, those of ends, walls and edges included, of the chord."""
         residuals = self.problem.cloud_residuals.residuals(self.state)
