@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -11,17 +10,11 @@ from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.designs import Design, unit_at
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, SHARED_VARIANCE, MatchTarget
+from bladewright.fitting.families.closed_blade import QUICK_ROUNDS, closed_blades
 from bladewright.fitting.families.first_parts import first_part, through_points
 from bladewright.fitting.families.flow_path import ClosedChannel
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
-from bladewright.fitting.families.laws import (
-    LAW_COUNT,
-    MIDDLE,
-    SECTION_SPANS,
-    nearest_law,
-    part_of_laws,
-    with_mean_laws,
-)
+from bladewright.fitting.families.laws import MIDDLE, SECTION_SPANS, nearest_law, part_of_laws, with_mean_laws
 from bladewright.fitting.families.section_shape import PLACES, SectionShape, section_shape, unrolled
 from bladewright.fitting.families.sections import (
     CONSIDERED,
@@ -36,15 +29,13 @@ from bladewright.fitting.families.sections import (
     misfits,
 )
 from bladewright.fitting.free_parameters import EDGES, FreeParameters
-from bladewright.fitting.initial_guess.blade import UPRIGHT, first_blade, spans_along_y
+from bladewright.fitting.initial_guess.blade import UPRIGHT, spans_along_y
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.scales import check_bounds, part_range
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, can_be_built, searched
 from bladewright.fitting.model_selection.selection import (
-    GUESS_NOISE,
     QUICK_POINTS,
     SEVERAL_POINTS,
-    THOROUGH_POINTS,
     determined,
     selected_match,
 )
@@ -55,12 +46,7 @@ from bladewright.numerics.elementary import turned_left, unit
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import Span, law_points
-from bladewright.section.unified_limits import RADII
 
-QUICK_ROUNDS = 4
-"""rounds of the search for the closed blade that the first design is taken from (design/matching_constants.md)"""
-SMALLER_RADII = (0.8, 0.4, 0.2)
-"""shares of its edge radii with which a closed blade is tried that cannot be built with all (design/matching.md)"""
 WALLS_HELD_NOTE = "hub and shroud are held as they are given"
 """note where the flow path is given"""
 ROUNDNESS_PLACE, ROUNDER_RATIO = 0.04, 1.3
@@ -172,24 +158,15 @@ def _shapes_of(part: Any) -> list[SectionShape]:
 def _first_blade(task: Task, kind: FitFamily, like: Any, header: DesignHeader) -> tuple[float, Design, Match]:
     """The turn of a frame, and the family's first blade in it, from the sections of a closed one of the unified family.
 
-    The short search that it was taken from comes with it. The closed blade is one that is searched, or where the family
-    has no blade near it the one that the search began with, whose edges miss no wall. Its sections and its channel are
-    all that is taken, so that it need not be fit to be built.
+    The short search that it was taken from comes with it.
     """
-    begun = first_blade(task.thinned(THOROUGH_POINTS).points, **header.known(like))
-    task = task.turned(begun.turn)
-    few = replace(task.thinned(QUICK_POINTS), free=FreeParameters(), bounds={}, walls=task.walls or begun.walls)
-    found = searched(few, begun.design, noise=GUESS_NOISE, rounds=QUICK_ROUNDS).design
-    radii = {path: value for path, value in found.parameters().items() if path.startswith(RADII)}
-    # searches hold edge radii at places along the span: between them they may be larger than the thickness holds
-    smaller = (found.changed({path: share * radii[path] for path in radii}) for share in SMALLER_RADII)
-    closed = next(filter(can_be_built, chain([found], smaller)), found)
+    turned, closed = closed_blades(task, like, header)
     task.progress("first design of the family")
     refusals = list[Exception]()
-    for blade in (closed, begun.design):
+    for blade, count in closed:
         try:
-            turn, first, trial = _first(task, model_of(blade).shape(blade), kind, like, header)
-            return begun.turn + turn, first, trial
+            turn, first, trial = _first(task.turned(turned), model_of(blade).shape(blade), kind, like, header, count)
+            return turned + turn, first, trial
         except (DesignError, FitError) as error:
             refusals.append(error)
     raise refusals[0]
@@ -225,10 +202,11 @@ class _Frame:
 
 
 def _first(
-    task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: DesignHeader
+    task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: DesignHeader, count: int
 ) -> tuple[float, Design, Match]:
     """The turn of a frame, the blade of the family in it whose sections are a closed blade's, and its short search.
 
+    Its laws have `count` control points along the span.
     Planes and kinds of section that those in the middle hardly tell apart are told apart by a short search of whole
     blades, of each plane with theta counted from where these meet it best.
     """
@@ -260,8 +238,8 @@ def _first(
         if any(frame.plane == each.plane and frame is not each for _, each in blades):
             continue
         try:
-            section = part_of_laws(_along_span(frame.shapes, _in_place(kind, frame, chosen.design)))
-            design = _blade_of(found, frame, kind.blade, section, like, header)
+            section = part_of_laws(_along_span(frame.shapes, _in_place(kind, frame, chosen.design)), count)
+            design = _blade_of(found, frame, kind.blade, section, like, header, count)
             blades.append((compared(few.turned(frame.turn), [design], rounds=rounds)[0], frame))
         except (DesignError, FitError) as error:
             refusal = error
@@ -278,7 +256,13 @@ def _first(
 
 
 def _blade_of(
-    found: ClosedChannel, frame: _Frame, blade: type[SectionedBlade], section: Any, like: Any, header: DesignHeader
+    found: ClosedChannel,
+    frame: _Frame,
+    blade: type[SectionedBlade],
+    section: Any,
+    like: Any,
+    header: DesignHeader,
+    count: int,
 ) -> Any:
     """The blade of sections that stand where those of a closed blade do."""
     design = found.exact.design
@@ -296,7 +280,7 @@ def _blade_of(
         "section": section,
     }
     name = "leading_edge_y" if linear else "leading_edge_theta"
-    fields[name] = nearest_law(place, LAW_COUNT)
+    fields[name] = nearest_law(place, count)
     if like is None:
         fields |= {edge: found.edge(edge, metre) for edge in EDGES}
         return blade(**fields, flow_path=found.flow_path(metre, revolved=not linear), plane=frame.plane)

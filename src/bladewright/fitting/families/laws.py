@@ -27,21 +27,21 @@ def with_mean_laws(part: Any) -> Any:
     return part.changed({path: float(np.mean(law_points(law))) for path, law in named_laws(part)})
 
 
-def part_of_laws(parts: Sequence[Any]) -> Any:
-    """One part of laws from those of sections.
+def part_of_laws(parts: Sequence[Any], count: int = LAW_COUNT) -> Any:
+    """One part of laws of so many control points from those of sections.
 
     Laws are constants where one, alone or together with those before it, leaves sections no shape. Raises FitError
     where even constants do.
     """
     paths = parts[MIDDLE].parameters()
-    whole = _with_shape(parts, dict.fromkeys(paths, LAW_COUNT))
+    whole = _with_shape(parts, dict.fromkeys(paths, count))
     if whole is not None:
         return whole
     taken = dict.fromkeys(paths, 1)
     found = _with_shape(parts, taken) or _with_shape([parts[MIDDLE]] * len(parts), taken)
     # those of one row along the chord together: their numbers of control points change together too
     for _, row in groupby(paths, key=lambda path: path.partition("[")[0]):
-        more = taken | dict.fromkeys(row, LAW_COUNT)
+        more = taken | dict.fromkeys(row, count)
         wider = _with_shape(parts, more)
         if wider is not None:
             taken, found = more, wider

@@ -1,0 +1,49 @@
+"""The blade of the unified family whose sections those of another family begin as."""
+
+from dataclasses import replace
+from itertools import chain
+
+from bladewright.designs import Design
+from bladewright.fitting.assessment.acceptance import GROSS_DEVIATION, NEAR_EVERYWHERE, MatchTarget
+from bladewright.fitting.families.kinds import DesignHeader
+from bladewright.fitting.families.laws import LAW_COUNT
+from bladewright.fitting.free_parameters import FreeParameters
+from bladewright.fitting.initial_guess.blade import first_blade
+from bladewright.fitting.matching.search import Match, Task, can_be_built, searched
+from bladewright.fitting.model_selection.selection import GUESS_NOISE, QUICK_POINTS, SEVERAL_POINTS, THOROUGH_POINTS
+from bladewright.fitting.model_selection.structure import structure_of
+from bladewright.fitting.model_selection.structure_search import StructureSearch
+from bladewright.section.unified_limits import RADII
+
+QUICK_ROUNDS = 4
+"""rounds of the search for the closed blade that the first design is taken from (design/matching_constants.md)"""
+RICH_LAW_COUNT = 6
+"""control points of each law along the span of a first blade whose closed one needed a rich structure
+(design/matching.md)"""
+SMALLER_RADII = (0.8, 0.4, 0.2)
+"""shares of its edge radii with which a closed blade is tried that cannot be built with all (design/matching.md)"""
+
+
+def closed_blades(task: Task, like: Design | None, header: DesignHeader) -> tuple[float, list[tuple[Design, int]]]:
+    """The turn about x [rad], and closed blades there in the order to be tried, with the control points of laws.
+
+    The first is one that is searched, the other the one that the search began with, whose edges miss no wall. Sections
+    and channel are all that is taken from them, so that they need not be fit to be built.
+    """
+    begun = first_blade(task.thinned(THOROUGH_POINTS).points, **header.known(like))
+    task = replace(task.turned(begun.turn), free=FreeParameters(), bounds={}, walls=task.walls or begun.walls)
+    found, count = searched(task.thinned(QUICK_POINTS), begun.design, noise=GUESS_NOISE, rounds=QUICK_ROUNDS), LAW_COUNT
+    if found.maximum > GROSS_DEVIATION[1] * found.model.chord:
+        found, count = _rich(task.thinned(SEVERAL_POINTS), found), RICH_LAW_COUNT
+    design = found.design
+    radii = {path: value for path, value in design.parameters().items() if path.startswith(RADII)}
+    # searches hold edge radii at places along the span: between them they may be larger than the thickness holds
+    smaller = (design.changed({path: share * radii[path] for path in radii}) for share in SMALLER_RADII)
+    closed = next(filter(can_be_built, chain([design], smaller)), design)
+    return begun.turn, [(closed, count), (begun.design, LAW_COUNT)]
+
+
+def _rich(task: Task, match: Match) -> Match:
+    """The match of a rich structure: few control points do not follow sections that change much along the span."""
+    search = StructureSearch(task=task, samples=structure_of(match.design).samples, first=match.design)
+    return search.rich(match, MatchTarget(tolerance=NEAR_EVERYWHERE * match.model.chord))
