@@ -230,7 +230,8 @@ def _first(
             refusal = error
     few, blades = task.thinned(QUICK_POINTS), list[tuple[Match, _Frame]]()
     off = misfits([match for match, _ in tried]) if tried else []
-    promising = [number for number in np.argsort(off, kind="stable") if off[number] <= PLANES_ALIKE * min(off)][:CONSIDERED]
+    nearest_first = np.argsort(off, kind="stable")[:CONSIDERED]
+    promising = [number for number in nearest_first if off[number] <= PLANES_ALIKE * min(off)]
     # of one nothing is to be decided
     rounds = TRIAL_ROUNDS if len(promising) > 1 else 1
     for number in promising:
