@@ -160,13 +160,13 @@ def _first_blade(task: Task, kind: FitFamily, like: Any, header: DesignHeader) -
 
     The short search that it was taken from comes with it.
     """
-    turned, closed = closed_blades(task, like, header)
+    begun, blades = closed_blades(task, like, header)
     task.progress("first design of the family")
     refusals = list[Exception]()
-    for blade, count in closed:
+    for blade, count in blades:
         try:
-            turn, first, trial = _first(task.turned(turned), model_of(blade).shape(blade), kind, like, header, count)
-            return turned + turn, first, trial
+            turn, first, trial = _first(task.turned(begun), model_of(blade).shape(blade), kind, like, header, count)
+            return begun + turn, first, trial
         except (DesignError, FitError) as error:
             refusals.append(error)
     raise refusals[0]
