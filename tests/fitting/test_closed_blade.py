@@ -7,9 +7,9 @@ import pytest
 
 from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.fitting.families.closed_blade import RICH_LAW_COUNT, closed_blades
-from bladewright.fitting.families.kinds import DesignHeader
 from bladewright.fitting.families.laws import LAW_COUNT, SECTION_SPANS, part_of_laws, with_mean_laws
 from bladewright.fitting.free_parameters import FreeParameters
+from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.search import Task
 from bladewright.fitting.models.blunt_edges import sides_of
@@ -42,7 +42,8 @@ def test_a_blade_that_changes_much_along_its_span_begins_as_a_rich_closed_one() 
     built = blade.build()
     points = np.concatenate([side(*draw.random((2, 1500))) for side in sides_of(built)])
     task = Task(points=points, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
-    turn, ((closed, count), (_, usual)) = closed_blades(task, None, DesignHeader(name="blade", length_unit="mm"))
-    assert (count, usual) == (RICH_LAW_COUNT, LAW_COUNT)
+    begun = first_blade(points)
+    (closed, count), *others = closed_blades(task, begun)
+    assert [count, *(each for _, each in others)] == [RICH_LAW_COUNT, LAW_COUNT, LAW_COUNT]
     sides = model_of(closed).shape(closed).sides
-    assert np.max(nearest_footpoints(task.turned(turn).points, sides).distances) < 5e-3 * built.chord
+    assert np.max(nearest_footpoints(task.turned(begun.turn).points, sides).distances) < 5e-3 * built.chord

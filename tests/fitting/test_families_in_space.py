@@ -11,8 +11,8 @@ from scipy.spatial import cKDTree
 from bladewright.errors import FitError
 from bladewright.fitting import free_parameters
 from bladewright.fitting.assessment.acceptance import MatchTarget
-from bladewright.fitting.families import blades
-from bladewright.fitting.families.blades import _alike, matched_blade
+from bladewright.fitting.families import blades, first_blades
+from bladewright.fitting.families.blades import matched_blade
 from bladewright.fitting.families.first_parts import through_points
 from bladewright.fitting.families.flow_path import CONTINUATIONS, ClosedChannel
 from bladewright.fitting.families.kinds import FAMILIES, DesignHeader
@@ -31,7 +31,6 @@ from bladewright.fitting.models.model import model_of
 from bladewright.section.laws import Span, law_points, named_laws
 from bladewright.section.profiles.naca4 import Naca4
 from bladewright.section.wedge_diffuser import WedgeDiffuser, WedgeDiffuserSection
-from machines import example
 from machines.sectioned import BLUNT, COMPRESSOR, DESIGNS, DIFFUSER
 
 VANE = replace(DIFFUSER, tolerance=1e-4)
@@ -172,7 +171,9 @@ def test_a_wedge_opens_downstream_whichever_way_its_flow_leads():
     section = WedgeDiffuserSection(name="vane", length_unit="mm", chord=50.0, section=wedge).build()
     shape = section_shape(section)
     edges = SimpleNamespace(values=lambda name, _: np.array([[0.0, 2.0 if name == "leading_edge" else 1.0]]))
-    flow = [blades._backwards(edges, FAMILIES["wedge-diffuser"], None, each) for each in (shape, shape.reversed())]
+    flow = [
+        first_blades._backwards(edges, FAMILIES["wedge-diffuser"], None, each) for each in (shape, shape.reversed())
+    ]
     assert flow == [False, True]
 
 
@@ -192,7 +193,7 @@ def test_where_radii_differ_the_machine_may_be_turned_until_the_leading_edge_sta
         exact = SimpleNamespace(design=SimpleNamespace(arrangement=arrangement))
         radii = {"leading_edge": 1.0, "trailing_edge": last}
         edges = SimpleNamespace(values=lambda name, _: np.array([[0.0, radii[name]]]), exact=exact, backwards=False)
-        return blades._planes(task, edges, None, shape)
+        return first_blades._planes(task, edges, None, shape)
 
     assert planes(1.5) == [("m'-theta", 0.0), ("m-r*theta", 0.0), ("m-r*theta", -0.4)]
     assert planes(1.01) == planes(1.5, "linear") == [("m'-theta", 0.0)]
@@ -205,7 +206,7 @@ def test_parts_along_the_span_are_the_searched_one_where_shapes_are_alike_and_tu
     shapes = [
         replace(shape, stagger=shape.stagger + np.radians(turn)) for turn in (-2.0, -1.0, -0.5, 0.0, 1.0, 2.0, 4.0)
     ]
-    parts = blades._along_span(shapes, searched)
+    parts = first_blades._along_span(shapes, searched)
     assert parts[3].parameters() == pytest.approx(searched.parameters())
     assert [each.stagger_angle for each in parts] == pytest.approx([28.0, 29.0, 29.5, 30.0, 31.0, 32.0, 34.0])
     assert {each.wedge_angle for each in parts} == {9.5}
@@ -247,7 +248,6 @@ def test_matches_are_compared_by_their_outliers_too_but_by_none_more_than_is_far
     # both count the far one alike
     clipped = np.sqrt((19.0 * np.array([1.0, 1.05]) ** 2 + 6.0**2) / 20.0)
     assert misfits(planted) == pytest.approx(clipped.tolist())
-    assert _alike([alike, near, stood_in([2.4] * 20)]) == [0, 1]
 
 
 @pytest.mark.parametrize(
@@ -259,41 +259,46 @@ def test_a_blade_that_is_missed_around_the_axis_is_sought_in_a_cascade_that_begi
 ):
     tried = []
 
-    def first(_task, _kind, _like, header):
-        arrangement = header.arrangement or "annular"
-        return 0.0, SimpleNamespace(arrangement=arrangement), {"annular": 1.0, "linear": trial}[arrangement]
+    def first(_task, begun, _kind, _like, _header):
+        arrangement = begun.design.arrangement
+        return begun.turn, begun.design, {"annular": 1.0, "linear": trial}[arrangement]
 
-    def selected(task, design, _like, _target, *, guessed):
+    def rich(task, design, _like, _target, *, guessed):
         assert guessed
         tried.append((design.arrangement, task.turn))
-        return SimpleNamespace(design=design, noise_estimate=SimpleNamespace(correlation=0.0)), design.arrangement
+        return SimpleNamespace(match=SimpleNamespace(design=design))
 
-    monkeypatch.setattr(blades, "_first_blade", first)
+    def reduced(rich, _target):
+        match = SimpleNamespace(design=rich.match.design, noise_estimate=SimpleNamespace(correlation=0.0))
+        return match, match.design.arrangement
+
+    begun = [
+        SimpleNamespace(design=SimpleNamespace(arrangement=arrangement), turn=turn)
+        for arrangement, turn in (("annular", 0.0), ("linear", UPRIGHT))
+    ]
+    monkeypatch.setattr(blades, "arranged_blades", lambda *_, **__: begun)
+    monkeypatch.setattr(blades, "first_of_family", first)
     monkeypatch.setattr(blades, "misfits", lambda trials: trials)
-    monkeypatch.setattr(blades, "_selected", selected)
+    monkeypatch.setattr(blades, "_rich", rich)
+    monkeypatch.setattr(blades, "reduced_match", reduced)
     monkeypatch.setattr(blades, "is_far", lambda *_: missed)
     monkeypatch.setattr(blades, "criterion", lambda match, _: match.design.arrangement == "annular")
-    points = example("vki-ls89").build().sides[0](*np.random.default_rng(2).random((2, 800)))[:, [0, 2, 1]]
-    task = Task(points=points, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
+    task = Task(points=cloud(), weights=np.ones(len(cloud())), free=FreeParameters(), bounds={})
     kind, header = FAMILIES["camber-angle"], DesignHeader(name="vane", length_unit="mm")
     _, reason = matched_blade(task, kind, None, None, header, MatchTarget())
-    # its span lies along y, and is turned to z
     assert tried == list(zip(taken, (0.0, UPRIGHT), strict=False))
     assert reason == taken[-1]
 
 
-def test_a_given_arrangement_is_the_only_one_and_all_refusals_are_one(monkeypatch):
-    tried = []
+def test_where_no_first_blade_has_a_shape_the_first_refusal_is_told(monkeypatch):
+    begun = [SimpleNamespace(turn=0.0, design=arrangement) for arrangement in ("annular", "linear")]
 
-    def refused(_task, _kind, _like, header):
-        tried.append(header.arrangement)
-        raise FitError(f"refused as {header.arrangement}")
+    def refused(_task, begun, _kind, _like, _header):
+        raise FitError(f"refused as {begun.design}")
 
-    monkeypatch.setattr(blades, "_first_blade", refused)
+    monkeypatch.setattr(blades, "arranged_blades", lambda *_, **__: begun)
+    monkeypatch.setattr(blades, "first_of_family", refused)
     task = Task(points=cloud(), weights=np.ones(len(cloud())), free=FreeParameters(), bounds={})
-    for arrangement, known in (("annular", ["annular"]), (None, [None, "linear"])):
-        tried.clear()
-        header = DesignHeader(name="vane", length_unit="mm", arrangement=arrangement)
-        with pytest.raises(FitError, match=f"refused as {known[0]}"):
-            matched_blade(task, FAMILIES["wedge-diffuser"], None, None, header, MatchTarget())
-        assert tried == known
+    header = DesignHeader(name="vane", length_unit="mm")
+    with pytest.raises(FitError, match="refused as annular"):
+        matched_blade(task, FAMILIES["wedge-diffuser"], None, None, header, MatchTarget())

@@ -11,6 +11,8 @@ from bladewright.errors import FitError
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.blade import (
     UPRIGHT,
+    FirstBlade,
+    arranged_blades,
     arranged_channels,
     first_blade,
     likely_arrangements,
@@ -163,3 +165,54 @@ def test_a_first_blade_that_is_far_around_the_axis_is_sought_in_a_cascade() -> N
     found = first_blade(points)
     assert found.turn == UPRIGHT
     assert _share(found.design, points @ about_x(found.turn).T) < 0.01
+
+
+def _with_rows(blade: Blade, draw: np.random.Generator, noise: float = 0.0) -> np.ndarray:
+    """Points strewn over the sides, and rows of points at both ends."""
+    u = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 60))) / 2.0
+    at = [draw.random((2, 1500)), np.stack([u, np.zeros(60)]), np.stack([u, np.ones(60)])]
+    points = np.concatenate([np.real(side(*each)) for side in blade.sides for each in at])
+    return points + noise * blade.chord * draw.normal(size=points.shape)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("noise", [0.0, 1e-4])
+@pytest.mark.parametrize(("name", "arrangement"), [("vki-ls89", "linear"), ("compressor-stator", "annular")])
+def test_rows_at_the_ends_of_first_blades_tell_their_arrangement(name: str, arrangement: str, noise: float) -> None:
+    blade = _truth(name)
+    points = _with_rows(blade, np.random.default_rng(5), noise)
+    # a cascade so far from the axis that nothing else tells
+    points[:, 2] += 5.0 * blade.chord if arrangement == "linear" else 0.0
+    found = [each.design.arrangement for each in arranged_blades(points)]
+    assert found == [arrangement]
+    assert [each.design.arrangement for each in arranged_blades(points, arrangement="annular")] == ["annular"]
+
+
+@pytest.mark.parametrize(
+    ("around", "level", "found"),
+    [
+        (1e-6, 1e-3, ["annular"]),
+        (9e-4, 3e-4, ["linear"]),
+        (1e-4, 1.5e-4, ["annular", "linear"]),
+        (4e-3, 1e-2, ["annular", "linear"]),
+        (np.inf, np.inf, ["annular", "linear"]),
+    ],
+)
+def test_rows_decide_where_those_of_one_arrangement_are_narrow_and_clearly_narrower(
+    monkeypatch: pytest.MonkeyPatch, around: float, level: float, found: list[str]
+) -> None:
+    def begun(_: np.ndarray, arrangement: str | None = None) -> FirstBlade:
+        return FirstBlade(design=example("vki-ls89" if arrangement else "compressor-stator"), walls=())
+
+    module = "bladewright.fitting.initial_guess.blade"
+    spread = {"annular": around, "linear": level}
+    monkeypatch.setattr(f"{module}.first_blade", begun)
+    monkeypatch.setattr(f"{module}._row_spread", lambda _, begun: spread[begun.design.arrangement])
+    points = _cloud(_truth("vki-ls89"), 400)
+    assert [each.design.arrangement for each in arranged_blades(points)] == found
+
+
+@pytest.mark.slow
+def test_without_rows_at_its_ends_a_blade_may_stand_in_both_arrangements() -> None:
+    points = _cloud(_truth("compressor-stator"), 1500, 0.05, 0.95)
+    assert [each.design.arrangement for each in arranged_blades(points)] == ["annular", "linear"]

@@ -4,13 +4,12 @@ from dataclasses import replace
 from itertools import chain
 
 from bladewright.designs import Design
-from bladewright.fitting.assessment.acceptance import GROSS_DEVIATION, NEAR_EVERYWHERE, MatchTarget
-from bladewright.fitting.families.kinds import DesignHeader
+from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, MatchTarget
 from bladewright.fitting.families.laws import LAW_COUNT
 from bladewright.fitting.free_parameters import FreeParameters
-from bladewright.fitting.initial_guess.blade import first_blade
+from bladewright.fitting.initial_guess.blade import FirstBlade
 from bladewright.fitting.matching.search import Match, Task, can_be_built, searched
-from bladewright.fitting.model_selection.selection import GUESS_NOISE, QUICK_POINTS, SEVERAL_POINTS, THOROUGH_POINTS
+from bladewright.fitting.model_selection.selection import GUESS_NOISE, QUICK_POINTS, SEVERAL_POINTS
 from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.fitting.model_selection.structure_search import StructureSearch
 from bladewright.section.unified_limits import RADII
@@ -24,26 +23,29 @@ SMALLER_RADII = (0.8, 0.4, 0.2)
 """shares of its edge radii with which a closed blade is tried that cannot be built with all (design/matching.md)"""
 
 
-def closed_blades(task: Task, like: Design | None, header: DesignHeader) -> tuple[float, list[tuple[Design, int]]]:
-    """The turn about x [rad], and closed blades there in the order to be tried, with the control points of laws.
+def closed_blades(task: Task, begun: FirstBlade) -> list[tuple[Design, int]]:
+    """Closed blades from a first one, in the order to be tried, and the control points of laws that begin with them.
 
-    The first is one that is searched, the other the one that the search began with, whose edges miss no wall. Sections
-    and channel are all that is taken from them, so that they need not be fit to be built.
+    They are searched, with a rich structure where few control points are not near everywhere; the last is the one that
+    the search began with, whose edges miss no wall. Sections and channel are all that is taken from them, so that they
+    need not be fit to be built.
     """
-    begun = first_blade(task.thinned(THOROUGH_POINTS).points, **header.known(like))
     task = replace(task.turned(begun.turn), free=FreeParameters(), bounds={}, walls=task.walls or begun.walls)
-    found, count = searched(task.thinned(QUICK_POINTS), begun.design, noise=GUESS_NOISE, rounds=QUICK_ROUNDS), LAW_COUNT
-    if found.maximum > GROSS_DEVIATION[1] * found.model.chord:
-        found, count = _rich(task.thinned(SEVERAL_POINTS), found), RICH_LAW_COUNT
-    design = found.design
+    found = searched(task.thinned(QUICK_POINTS), begun.design, noise=GUESS_NOISE, rounds=QUICK_ROUNDS)
+    closed = [(_with_smaller_radii(found.design), LAW_COUNT), (begun.design, LAW_COUNT)]
+    if found.maximum <= NEAR_EVERYWHERE * found.model.chord:
+        return closed
+    return [(_with_smaller_radii(_rich(task.thinned(SEVERAL_POINTS), found).design), RICH_LAW_COUNT), *closed]
+
+
+def _with_smaller_radii(design: Design) -> Design:
+    """A design with edge radii with which it can be built: between the places that hold them, laws may pass those."""
     radii = {path: value for path, value in design.parameters().items() if path.startswith(RADII)}
-    # searches hold edge radii at places along the span: between them they may be larger than the thickness holds
     smaller = (design.changed({path: share * radii[path] for path in radii}) for share in SMALLER_RADII)
-    closed = next(filter(can_be_built, chain([design], smaller)), design)
-    return begun.turn, [(closed, count), (begun.design, LAW_COUNT)]
+    return next(filter(can_be_built, chain([design], smaller)), design)
 
 
 def _rich(task: Task, match: Match) -> Match:
     """The match of a rich structure: few control points do not follow sections that change much along the span."""
     search = StructureSearch(task=task, samples=structure_of(match.design).samples, first=match.design)
-    return search.rich(match, MatchTarget(tolerance=NEAR_EVERYWHERE * match.model.chord))
+    return search.rich(match, MatchTarget(structured=True))

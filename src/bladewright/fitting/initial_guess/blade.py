@@ -20,7 +20,8 @@ from bladewright.fitting.clouds.thinning import even_subset, random_subset, with
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.channel import SlicedChannel, machine_coordinates, ranked_channels
 from bladewright.fitting.initial_guess.slices import PLACES, fitted_law, unified_numbers
-from bladewright.fitting.matching.search import Task, about_x, searched
+from bladewright.fitting.matching.blade_ends import ROW_LEAST_WIDTH, ROW_SPREAD
+from bladewright.fitting.matching.search import Task, about_x, evaluated, searched
 from bladewright.fitting.model_selection.reshaping import FIRST_BLADE, widened_where_feasible, with_feasible_edges
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
@@ -75,6 +76,43 @@ def first_blade(
     if not tried:
         raise refusals[0]
     return tried[-1][1] if tried[-1][0] < CLEARLY_LINEAR * tried[0][0] else tried[0][1]
+
+
+def arranged_blades(points: Reals, *, arrangement: Arrangement | None = None, **header: Any) -> list[FirstBlade]:
+    """First blades near points (n, 3) [m] in the arrangements in which they may stand, the likelier one first.
+
+    There is one alone where the arrangement is given or where the rows of points at both ends show it: they lie on
+    surfaces of revolution, or in a cascade on cylinders along y. Other arguments are those of `first_blade`. Raises
+    FitError where no blade that can be built lies near the points.
+    """
+    first = first_blade(points, arrangement=arrangement, **header)
+    if arrangement is not None or first.design.arrangement == "linear":
+        return [first]
+    try:
+        turn = UPRIGHT if spans_along_y(points) else 0.0
+        other = first_blade(points @ about_x(turn).T, arrangement="linear", **header)
+    except BladewrightError:
+        # what cannot be sliced as a cascade is none
+        return [first]
+    other = replace(other, turn=turn)
+    around, level = _row_spread(points, first), _row_spread(points, other)
+    if min(around, level) < ROW_SPREAD and not CLEARER_ROW < around / level < 1.0 / CLEARER_ROW:
+        return [first if around < level else other]
+    return [first, other]
+
+
+def _row_spread(points: Reals, begun: FirstBlade) -> float:
+    """By how much points (n, 3) at the ends of a first blade are off rows on its walls, of its chord."""
+    task = Task(points=points @ about_x(begun.turn).T, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
+    try:
+        found = evaluated(task, begun.design, noise=NOISE)
+    except FitError:
+        return np.inf
+    if len(found.ends.walls) < 2:
+        return np.inf
+    # the sides themselves are no nearer to the walls
+    spreads = (max(wall.spread / found.model.chord, ROW_LEAST_WIDTH) for wall in found.ends.walls.values())
+    return float(np.sqrt(np.prod(list(spreads))))
 
 
 def likely_arrangements(

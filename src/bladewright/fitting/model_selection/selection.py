@@ -4,7 +4,7 @@ What the points do not determine then is held, and a last search takes more poin
 """
 
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from bladewright.designs import Design
 from bladewright.errors import FitError
@@ -51,6 +51,21 @@ DETERMINED_MARGIN, MOST_HOLDINGS = 1.5, 3
 search that follows changes the residuals; and how often parameters are held at most (design/matching_constants.md)."""
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RichMatch:
+    """A match before the fewest control points are sought, and what is needed to seek them."""
+
+    match: Match
+    """of a rich structure; of the structure that is given, the last"""
+    first: Match
+    """of a few points, and of the structure it began with"""
+    search: StructureSearch | None
+    """None where the structure is given"""
+    many: Task
+    """the points of the last search"""
+    note: str
+
+
 def selected_match(
     task: Task, first: Design, target: MatchTarget, *, like: Structure | None, guessed: bool
 ) -> tuple[Match, str]:
@@ -58,6 +73,11 @@ def selected_match(
 
     `first` is a first design, a guess or a start; `like` is the structure of a given design.
     """
+    return reduced_match(rich_match(task, first, target, like=like, guessed=guessed), target)
+
+
+def rich_match(task: Task, first: Design, target: MatchTarget, *, like: Structure | None, guessed: bool) -> RichMatch:
+    """The match of a rich structure, or of the one that is given; arguments are those of `selected_match`."""
     several, many = task.thinned(SEVERAL_POINTS), task.thinned(THOROUGH_POINTS)
     few, noise = task.thinned(QUICK_POINTS) if task.dimension == 3 else several, GUESS_NOISE if guessed else None
     few = replace(few, preliminary=guessed and task.dimension == 3)
@@ -65,9 +85,9 @@ def selected_match(
     found = nearest_from_other_edges(few, found, GUESS_NOISE) if guessed else found
     found = nearest_by_clustering(few, found) if guessed and like is None else found
     if target.structured and target.tolerance is None:
-        return _of_structure(several, many, found, like if guessed else None), ""
+        match = _of_structure(several, many, found, like if guessed else None)
+        return RichMatch(match=match, first=found, search=None, many=many, note="")
     held = target.parameters is not None and bool(corner_radii(first)) and found.ends.in_rows(found.model.chord)
-    reason = CORNERS_HELD_NOTE if held else ""
     several, many = map(_with_corners_held, (several, many)) if held else (several, many)
     search = StructureSearch(task=several, samples=(like or structure_of(first)).samples, first=found.design)
     if task.dimension == 3 and guessed:
@@ -82,10 +102,18 @@ def selected_match(
     rich = without_false_outliers(several, rich)
     # narrower matches tell outliers less
     many = many.trusting(evaluated(many, rich.design, noise=rich.rms))
-    search = replace(search, task=several.trusting(rich))
+    search, note = replace(search, task=several.trusting(rich)), CORNERS_HELD_NOTE if held else ""
+    return RichMatch(match=rich, first=found, search=search, many=many, note=note)
+
+
+def reduced_match(begun: RichMatch, target: MatchTarget) -> tuple[Match, str]:
+    """The match of the fewest control points that keep what is asked, and why it ends where no target is met."""
+    rich, search, many = begun.match, begun.search, begun.many
+    if search is None:
+        return rich, begun.note
     if target.tolerance is not None:
         found, reason = search.within(rich, target.tolerance)
-        if len(many.points) > len(several.points):
+        if len(many.points) > len(search.task.points):
             found = evaluated(many, found.design, noise=found.rms)
             if found.maximum > target.tolerance:
                 weights = reweighted(many.weights, found.state.footpoints.distances, target.tolerance)
@@ -93,7 +121,8 @@ def selected_match(
         return found, reason
     if target.parameters is not None:
         sized = search.of_size(rich, target.parameters)
-        return _searched_further(many, sized if len(sized.problem.paths) <= target.parameters else found), reason
+        fitting = sized if len(sized.problem.paths) <= target.parameters else begun.first
+        return _searched_further(many, fitting), begun.note
     last, note = determined(many, search.near_everywhere(rich))
     limit = trusted_distance(last)
     lost = has_systematic_misfit(last) and last.maximum > limit
