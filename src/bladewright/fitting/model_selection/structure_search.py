@@ -204,7 +204,9 @@ class StructureSearch:
     def near_everywhere(self, rich: Match) -> Match:
         """The match that predicts well, or one that is nearer where that is far from some points."""
         found, limit = self.well_predicted(rich), trusted_distance(rich)
-        if not has_systematic_misfit(found) or found.maximum <= limit or rich.maximum > limit:
+        # hardly further than the rich match is near enough
+        enough = max(limit, min(NEAR_RICH * rich.maximum, NEAR_EVERYWHERE * rich.model.chord))
+        if not has_systematic_misfit(found) or found.maximum <= enough or rich.maximum > limit:
             return found
         nearer, _ = self.within(rich, limit)
         return nearer if nearer.maximum < found.maximum and not is_refused(nearer) else found
