@@ -250,6 +250,15 @@ def test_matches_are_compared_by_their_outliers_too_but_by_none_more_than_is_far
     assert misfits(planted) == pytest.approx(clipped.tolist())
 
 
+@pytest.mark.parametrize(("misses", "chosen"), [((1.2, 1.0, 1.1), 0), ((1.3, 1.1, 1.0), 2), ((1.0, 1.1, 1.2), 0)])
+def test_in_doubt_sections_are_in_the_plane_that_designs_have_by_default(misses, chosen):
+    default = type(VANE).__dataclass_fields__["plane"].default
+    planes = (first_blades.CONFORMAL, first_blades.UNROLLED, first_blades.UNROLLED)
+    tried = [(stood_in([miss] * 20), SimpleNamespace(plane=plane)) for miss, plane in zip(misses, planes, strict=True)]
+    assert first_blades._nearest(tried) is tried[chosen]
+    assert default == first_blades.CONFORMAL
+
+
 @pytest.mark.parametrize(
     ("missed", "trial", "taken"),
     [(False, 1.0, ["annular"]), (True, 2.9, ["annular", "linear"]), (True, 3.1, ["annular"])],

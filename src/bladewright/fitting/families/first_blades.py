@@ -111,9 +111,7 @@ def _first(
             refusal = error
     if not blades:
         raise refusal
-    off = misfits([blade for blade, _ in blades])
-    doubt = [IN_DOUBT if frame.plane == CONFORMAL else 1.0 for _, frame in blades]
-    best, frame = blades[int(np.argmin(np.divide(off, doubt)))]
+    best, frame = _nearest(blades)
     nearest: Any = best.design
     if not frame.turn:
         return 0.0, nearest, best
@@ -134,6 +132,13 @@ class _Frame:
     """at SECTION_SPANS"""
     points: Reals
     """(n, 2) beside the one in the middle"""
+
+
+def _nearest(blades: Sequence[tuple[Match, _Frame]]) -> tuple[Match, _Frame]:
+    """The blade that is nearest to the points; in doubt the one in the plane that designs have by default."""
+    off = misfits([blade for blade, _ in blades])
+    doubt = [IN_DOUBT if frame.plane == CONFORMAL else 1.0 for _, frame in blades]
+    return blades[int(np.argmin(np.divide(off, doubt)))]
 
 
 def _band(task: Task, closed: ModelShape, v: float) -> Reals:
