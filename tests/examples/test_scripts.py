@@ -42,7 +42,7 @@ def test_exports_hold_what_a_script_makes(name):
     assert report["file"] == f"{name}.step"
     assert (EXPORTS / f"{name}.step").read_bytes().startswith(b"ISO-10303-21;")
     assert (EXPORTS / f"{name}.png").read_bytes().startswith(b"\x89PNG")
-    assert f"[{name}]({name}.png)" in (EXPORTS / "README.md").read_text()
+    assert f"[{name}]({name}.png)" in (EXPORTS / "README.md").read_text(encoding="utf-8")
 
 
 def test_exports_stay_below_sixteen_megabytes():

@@ -81,7 +81,7 @@ def test_a_round_trip_of_another_design_is_said_to_be_one():
 
 def test_a_report_of_a_section_has_no_view_in_space(tmp_path):
     views.report(VANE, tmp_path / "vane.html", built=built(VANE))
-    read = Page((tmp_path / "vane.html").read_text())
+    read = Page((tmp_path / "vane.html").read_text(encoding="utf-8"))
     assert not [attrs for _, attrs in read.tags if "data-scene" in attrs]
     assert "maximum thickness" in read.words
     assert [each.name for each in tmp_path.iterdir()] == ["vane.html"]
