@@ -101,3 +101,20 @@ def test_a_richer_structure_that_is_no_nearer_ends_the_search_for_rich_ones(monk
     first = SimpleNamespace(rms=1e-3, maximum=1e-1, design=None, model=SimpleNamespace(chord=1.0))
     found = StructureSearch(task=task, samples=0, first=None).rich(first, MatchTarget(tolerance=1e-5))
     assert (found is searched[0], len(searched)) == (True, 2)
+
+
+@pytest.mark.parametrize(
+    ("rich", "found", "again"),
+    [(0.95e-4, 1.1e-4, False), (0.6e-4, 1.1e-4, True), (4.5e-4, 4.9e-4, False), (4.5e-4, 5.5e-4, True)],
+)
+def test_a_match_is_sought_again_where_it_is_clearly_further_off_than_the_rich_one(monkeypatch, rich, found, again):
+    largest = {"rich": rich, "found": found, "nearer": 0.9 * found}
+    of = {
+        name: SimpleNamespace(maximum=distance, model=SimpleNamespace(chord=1.0)) for name, distance in largest.items()
+    }
+    monkeypatch.setattr(structure_search, "has_systematic_misfit", lambda _: True)
+    monkeypatch.setattr(structure_search, "is_refused", lambda _: False)
+    monkeypatch.setattr(StructureSearch, "well_predicted", lambda *_: of["found"])
+    monkeypatch.setattr(StructureSearch, "within", lambda *_: (of["nearer"], ""))
+    search = StructureSearch(task=None, samples=0, first=None)
+    assert search.near_everywhere(of["rich"]) is of["nearer" if again else "found"]

@@ -49,8 +49,10 @@ def matched_blade(
     tried, refusals, trials = list[tuple[Task, RichMatch]](), list[Exception](), list[Match]()
     # how near a number of parameters comes does not tell arrangements apart, a rich match does
     asked = replace(target, parameters=None)
-    starts = [None] if start is not None else _first_blades(task, like, header)
-    for begun in starts:
+    begun_with: list[FirstBlade | None] = [None]
+    if start is None:
+        begun_with = [*arranged_blades(task.thinned(THOROUGH_POINTS).points, **header.known(like))]
+    for begun in begun_with:
         there, first = task, start
         try:
             if begun is not None:
@@ -75,11 +77,6 @@ def matched_blade(
         outlined = _through_points(task, found, target)
         found, reason = min(filter(None, ((found, reason), outlined)), key=lambda each: criterion(each[0], target))
     return found, "; ".join(filter(None, (reason, "" if own else WALLS_HELD_NOTE)))
-
-
-def _first_blades(task: Task, like: Any, header: DesignHeader) -> list[FirstBlade]:
-    """First blades of the unified family in the arrangements in which the blade may be; of a given one in its own."""
-    return arranged_blades(task.thinned(THOROUGH_POINTS).points, **header.known(like))
 
 
 def _rich(task: Task, first: Any, like: Any, target: MatchTarget, *, guessed: bool) -> RichMatch:

@@ -1,5 +1,6 @@
 """The blade of the unified family whose sections those of another family begin as."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import chain
 
@@ -23,7 +24,7 @@ SMALLER_RADII = (0.8, 0.4, 0.2)
 """shares of its edge radii with which a closed blade is tried that cannot be built with all (design/matching.md)"""
 
 
-def closed_blades(task: Task, begun: FirstBlade) -> list[tuple[Design, int]]:
+def closed_blades(task: Task, begun: FirstBlade) -> Iterator[tuple[Design, int]]:
     """Closed blades from a first one, in the order to be tried, and the control points of laws that begin with them.
 
     They are searched, with a rich structure where few control points are not near everywhere; the last is the one that
@@ -32,10 +33,10 @@ def closed_blades(task: Task, begun: FirstBlade) -> list[tuple[Design, int]]:
     """
     task = replace(task.turned(begun.turn), free=FreeParameters(), bounds={}, walls=task.walls or begun.walls)
     found = searched(task.thinned(QUICK_POINTS), begun.design, noise=GUESS_NOISE, rounds=QUICK_ROUNDS)
-    closed = [(_with_smaller_radii(found.design), LAW_COUNT), (begun.design, LAW_COUNT)]
-    if found.maximum <= NEAR_EVERYWHERE * found.model.chord:
-        return closed
-    return [(_with_smaller_radii(_rich(task.thinned(SEVERAL_POINTS), found).design), RICH_LAW_COUNT), *closed]
+    if found.maximum > NEAR_EVERYWHERE * found.model.chord:
+        yield _with_smaller_radii(_rich(task.thinned(SEVERAL_POINTS), found).design), RICH_LAW_COUNT
+    yield _with_smaller_radii(found.design), LAW_COUNT
+    yield begun.design, LAW_COUNT
 
 
 def _with_smaller_radii(design: Design) -> Design:

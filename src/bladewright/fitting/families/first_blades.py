@@ -57,14 +57,13 @@ BAND = 0.15
 def first_of_family(
     task: Task, begun: FirstBlade, kind: FitFamily, like: Any, header: DesignHeader
 ) -> tuple[float, Design, Match]:
-    """The turn of a frame, and the family's first blade in it, from the sections of a closed one of the unified family.
+    """The turn of a frame about x [rad], and the family's first blade in it, from the sections of a closed unified one.
 
-    The short search that it was taken from comes with it.
+    The short search that it was taken from comes with it. Raises the first refusal where no closed blade leads to one.
     """
-    blades = closed_blades(task, begun)
     task.progress("first design of the family")
     refusals = list[Exception]()
-    for blade, count in blades:
+    for blade, count in closed_blades(task, begun):
         try:
             shape = model_of(blade).shape(blade)
             turn, first, trial = _first(task.turned(begun.turn), shape, kind, like, header, count)

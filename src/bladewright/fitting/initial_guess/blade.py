@@ -102,7 +102,10 @@ def arranged_blades(points: Reals, *, arrangement: Arrangement | None = None, **
 
 
 def _row_spread(points: Reals, begun: FirstBlade) -> float:
-    """By how much points (n, 3) at the ends of a first blade are off rows on its walls, of its chord."""
+    """Scatter of points (n, 3) [m] at both ends of a first blade about rows beside its walls, of its chord [-].
+
+    It is infinite where an end has no points, or the blade no shape.
+    """
     task = Task(points=points @ about_x(begun.turn).T, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
     try:
         found = evaluated(task, begun.design, noise=NOISE)
@@ -188,8 +191,8 @@ ROW_DEGREE, ROW_TURNS, ROW_OUTLIER = 5, 5, 6.7
 """degree of the row's line, iterations in which it is found (`ROW_TURNS`), and the distance, in medians, beyond which a
 point does not belong to it (`ROW_OUTLIER`) (design/matching_constants.md)"""
 CLEARER_ROW, CLEAR_ROW = 0.5, 1e-3
-"""ratio of the scatter of rows about the axis to that on planes which decides; rows on planes must also scatter by less
-than `CLEAR_ROW` of the span (design/matching.md)"""
+"""ratio of the scatter of rows in one arrangement to that in the other which decides; the lowest points on planes must
+also scatter by less than `CLEAR_ROW` of the span (design/matching.md)"""
 
 UPRIGHT = -0.5 * np.pi
 """angle about x that brings y to z [rad]"""
