@@ -31,6 +31,7 @@ from bladewright.fitting.models.model import model_of
 from bladewright.section.laws import Span, law_points, named_laws
 from bladewright.section.profiles.naca4 import Naca4
 from bladewright.section.wedge_diffuser import WedgeDiffuser, WedgeDiffuserSection
+from machines import example
 from machines.sectioned import BLUNT, COMPRESSOR, DESIGNS, DIFFUSER
 
 VANE = replace(DIFFUSER, tolerance=1e-4)
@@ -248,6 +249,27 @@ def test_matches_are_compared_by_their_outliers_too_but_by_none_more_than_is_far
     # both count the far one alike
     clipped = np.sqrt((19.0 * np.array([1.0, 1.05]) ** 2 + 6.0**2) / 20.0)
     assert misfits(planted) == pytest.approx(clipped.tolist())
+
+
+@pytest.mark.parametrize("rows", [np.linspace(0.0, 1.0, 41), np.array([0.1, 0.3, 0.7, 0.95])])
+def test_a_cloud_of_few_sections_shows_the_section_between_them(rows):
+    design = example("compressor-stator")
+    closed = model_of(design).shape(design)
+    u = np.tile((np.arange(40) + 0.5) / 40.0, len(rows))
+    v = np.repeat(rows, 40)
+    points = np.concatenate(
+        [footpoints_at(np.zeros((len(u), 3)), closed.sides, np.full(len(u), side), u, v).points for side in (0, 1)]
+    )
+    task = Task(points=points, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
+    band = first_blades._band(task, closed, 0.5)
+    # the points are on the blade, so that these are on its section; both sides are among them
+    assert 0.1 * len(points) < len(band) < 0.6 * len(points)
+    curves = [
+        np.real(closed.exact.section(0.5).curves[name](np.linspace(0.0, 1.0, 4001))) for name in ("upper", "lower")
+    ]
+    off = [cKDTree(curve).query(band)[0] for curve in curves]
+    assert np.max(np.min(off, axis=0)) < 1e-3 * np.ptp(curves[0][:, 0])
+    assert min(np.mean(off[0] < off[1]), np.mean(off[1] < off[0])) > 0.4
 
 
 @pytest.mark.parametrize(("misses", "chosen"), [((1.2, 1.0, 1.1), 0), ((1.3, 1.1, 1.0), 2), ((1.0, 1.1, 1.2), 0)])

@@ -50,8 +50,8 @@ CONFORMAL, UNROLLED = "m'-theta", "m-r*theta"
 SAME_RADIUS = 1.02
 """ratio of the edges' radii below which both planes show the same sections but for their size, within 1 %"""
 BAND = 0.15
-"""half the width, in v, of the band of points that are taken for points of the section in its middle
-(design/matching_constants.md)"""
+"""half the width, in v, of the band of points that are taken for points of the section in its middle, and share of the
+points that the nearest of others are where the band has fewer (design/matching_constants.md)"""
 
 
 def first_of_family(
@@ -141,13 +141,18 @@ def _nearest(blades: Sequence[tuple[Match, _Frame]]) -> tuple[Match, _Frame]:
 
 
 def _band(task: Task, closed: ModelShape, v: float) -> Reals:
-    """Points (n, 2) of the section at v of a closed blade, with the deviations of the points of the cloud beside it."""
+    """Points (n, 2) of the section at v of a closed blade, with the deviations of the points of the cloud beside it.
+
+    A cloud of few sections may have none so near: then the nearest points are.
+    """
     few = task.thinned(SEVERAL_POINTS)
     feet = nearest_footpoints(few.points, closed.sides)
+    away = np.abs(feet.v - v)
+    beside = away <= max(BAND, float(np.quantile(away, BAND)))
     section = closed.exact.section(v)
     found = []
     for number, name in enumerate(("upper", "lower")):
-        rows = np.flatnonzero((feet.side == number) & (np.abs(feet.v - v) < BAND))
+        rows = np.flatnonzero((feet.side == number) & beside)
         curve = section.curves[name]
         places, along = np.real(curve(feet.u[rows])), np.real(curve.derivative(feet.u[rows]))
         scale = np.real(section.scale(places[:, 0]))
