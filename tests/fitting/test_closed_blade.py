@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bladewright.blade.design.sectioned import SectionedBlade
-from bladewright.fitting.families.closed_blade import RICH_LAW_COUNT, closed_blades
+from bladewright.fitting.families.first_blades import RICH_LAW_COUNT, closed_blades
 from bladewright.fitting.families.laws import LAW_COUNT, SECTION_SPANS, part_of_laws, with_mean_laws
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.blade import first_blade

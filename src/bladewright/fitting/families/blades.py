@@ -14,7 +14,7 @@ from bladewright.fitting.families.laws import SECTION_SPANS, part_of_laws
 from bladewright.fitting.families.section_shape import PLACES, SectionShape
 from bladewright.fitting.families.sections import PROMISING, criterion, inliers_of, is_far, misfits
 from bladewright.fitting.free_parameters import FreeParameters
-from bladewright.fitting.initial_guess.blade import FirstBlade, arranged_blades
+from bladewright.fitting.initial_guess.blade import arranged_blades
 from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, can_be_built, searched
 from bladewright.fitting.model_selection.selection import (
@@ -29,8 +29,6 @@ from bladewright.fitting.model_selection.structure import reshaped, structure_of
 from bladewright.fitting.model_selection.structure_search import SETTLED_RICH
 from bladewright.section.laws import Span
 
-WALLS_HELD_NOTE = "hub and shroud are held as they are given"
-"""note where the flow path is given"""
 CONTOUR_POINTS = 32
 """points of contours along the chord where no profile is near enough (design/matching.md)"""
 
@@ -49,9 +47,8 @@ def matched_blade(
     tried, refusals, trials = list[tuple[Task, RichMatch]](), list[Exception](), list[Match]()
     # how near a number of parameters comes does not tell arrangements apart, a rich match does
     asked = replace(target, parameters=None)
-    begun_with: list[FirstBlade | None] = [None]
-    if start is None:
-        begun_with = [*arranged_blades(task.thinned(THOROUGH_POINTS).points, **header.known(like))]
+    few = task.thinned(THOROUGH_POINTS).points
+    begun_with = [None] if start is not None else arranged_blades(few, **header.known(like))
     for begun in begun_with:
         there, first = task, start
         try:
@@ -76,7 +73,7 @@ def matched_blade(
     if kind.has_contours and own and misfit and target.parameters is None:
         outlined = _through_points(task, found, target)
         found, reason = min(filter(None, ((found, reason), outlined)), key=lambda each: criterion(each[0], target))
-    return found, "; ".join(filter(None, (reason, "" if own else WALLS_HELD_NOTE)))
+    return found, "; ".join(filter(None, (reason, "" if own else "hub and shroud are held as they are given")))
 
 
 def _rich(task: Task, first: Any, like: Any, target: MatchTarget, *, guessed: bool) -> RichMatch:
@@ -89,10 +86,7 @@ def _rich(task: Task, first: Any, like: Any, target: MatchTarget, *, guessed: bo
 
 
 def _through_points(task: Task, match: Match, target: MatchTarget) -> tuple[Match, str] | None:
-    """The match by contours that begin as the sections of another match, and why it ends where no target is met.
-
-    None where it has no shape, or cannot be built.
-    """
+    """The match by contours that begin as the sections of another, and its reason; None where it cannot be built."""
     design: Any = match.design
     some = inliers_of(task, match, SEVERAL_POINTS)
     try:

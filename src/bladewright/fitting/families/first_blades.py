@@ -4,20 +4,27 @@ Kinds of section are chosen in the middle, by points beside it; planes by short 
 sections in the middle hardly tell them apart.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import Any
 
 import numpy as np
 
-from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.designs import Design, unit_at
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.families.closed_blade import QUICK_ROUNDS, closed_blades
+from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, MatchTarget
 from bladewright.fitting.families.first_parts import first_part
 from bladewright.fitting.families.flow_path import ClosedChannel
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
-from bladewright.fitting.families.laws import MIDDLE, SECTION_SPANS, nearest_law, part_of_laws, with_mean_laws
+from bladewright.fitting.families.laws import (
+    LAW_COUNT,
+    MIDDLE,
+    SECTION_SPANS,
+    nearest_law,
+    part_of_laws,
+    with_mean_laws,
+)
 from bladewright.fitting.families.section_shape import SectionShape, section_shape, unrolled
 from bladewright.fitting.families.sections import (
     CONSIDERED,
@@ -31,27 +38,40 @@ from bladewright.fitting.free_parameters import EDGES, FreeParameters
 from bladewright.fitting.initial_guess.blade import FirstBlade
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.scales import part_range
-from bladewright.fitting.matching.search import Match, Task, searched
-from bladewright.fitting.model_selection.selection import QUICK_POINTS, SEVERAL_POINTS
+from bladewright.fitting.matching.search import Match, Task, can_be_built, searched
+from bladewright.fitting.model_selection.selection import GUESS_NOISE, QUICK_POINTS, SEVERAL_POINTS
+from bladewright.fitting.model_selection.structure import structure_of
+from bladewright.fitting.model_selection.structure_search import StructureSearch
 from bladewright.fitting.models.model import ModelShape, model_of
 from bladewright.numerics.elementary import turned_left, unit
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import Span, law_points
+from bladewright.section.unified_limits import RADII
 
+QUICK_ROUNDS = 4
+"""rounds of short searches for what a first design is taken from (design/matching_constants.md)"""
+RICH_LAW_COUNT = 6
+"""control points of each law of a first blade whose closed one needed a rich structure (design/matching.md)"""
+SMALLER_RADII = (0.8, 0.4, 0.2)
+"""shares of its edge radii with which a closed blade is tried that cannot be built with all (design/matching.md)"""
 ROUNDNESS_PLACE, ROUNDER_RATIO = 0.04, 1.3
-"""chord fraction from an edge at which its roundness is compared, and the ratio of half thicknesses (`ROUNDER_RATIO`)
-from which one edge is the rounder one (design/matching_constants.md)"""
+"""chord fraction from an edge at which half thicknesses are compared, and their ratio from which one edge is the
+rounder one (design/matching_constants.md)"""
 PLANES_ALIKE, IN_DOUBT = 1.5, 1.25
 """ratio of misfits in the middle up to which a plane may be the right one, and of those of whole blades up to which the
 plane is kept that designs have by default (design/matching.md)"""
 CONFORMAL, UNROLLED = "m'-theta", "m-r*theta"
 """planes of stream surfaces in which sections are tried: the first is that of designs that name none"""
+HALF_SPAN: Reals = np.array([0.5])
+"""v at which edges are compared"""
 SAME_RADIUS = 1.02
 """ratio of the edges' radii below which both planes show the same sections but for their size, within 1 %"""
+SECTION_HEADER = DesignHeader(name="section", length_unit="m")
+"""of the section in the middle, which is matched on its own"""
 BAND = 0.15
-"""half the width, in v, of the band of points that are taken for points of the section in its middle, and share of the
-points that the nearest of others are where the band has fewer (design/matching_constants.md)"""
+"""half the width, in v, of the band of points that show the section in its middle, and the least share of all points
+in a band (design/matching_constants.md)"""
 
 
 def first_of_family(
@@ -73,13 +93,35 @@ def first_of_family(
     raise refusals[0]
 
 
+def closed_blades(task: Task, begun: FirstBlade) -> Iterator[tuple[Design, int]]:
+    """Closed blades from a first one, in the order to be tried, and the control points of laws that begin with them.
+
+    They are searched, with a rich structure where few control points are not near everywhere; the last is the one that
+    the search began with, whose edges miss no wall. Sections and channel are all that is taken from them, so that they
+    need not be fit to be built.
+    """
+    task = replace(task.turned(begun.turn), free=FreeParameters(), bounds={}, walls=task.walls or begun.walls)
+    found = searched(task.thinned(QUICK_POINTS), begun.design, noise=GUESS_NOISE, rounds=QUICK_ROUNDS)
+    if found.maximum > NEAR_EVERYWHERE * found.model.chord:
+        # few control points do not follow sections that change much along the span
+        samples = structure_of(found.design).samples
+        search = StructureSearch(task=task.thinned(SEVERAL_POINTS), samples=samples, first=found.design)
+        yield _with_smaller_radii(search.rich(found, MatchTarget(structured=True)).design), RICH_LAW_COUNT
+    yield _with_smaller_radii(found.design), LAW_COUNT
+    yield begun.design, LAW_COUNT
+
+
+def _with_smaller_radii(design: Design) -> Design:
+    """A design with edge radii with which it can be built: between the places that hold them, laws may pass those."""
+    radii = {path: value for path, value in design.parameters().items() if path.startswith(RADII)}
+    smaller = (design.changed({path: share * radii[path] for path in radii}) for share in SMALLER_RADII)
+    return next(filter(can_be_built, chain([design], smaller)), design)
+
+
 def _first(
     task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: DesignHeader, count: int
 ) -> tuple[float, Design, Match]:
-    """The turn of a frame, the blade of the family in it whose sections are a closed blade's, and its short search.
-
-    Its laws have `count` control points along the span.
-    """
+    """The turn of a frame, the blade in it with a closed blade's sections and laws of `count`, and its short search."""
     built = [closed.exact.section(float(v)) for v in SECTION_SPANS]
     found, middle = ClosedChannel(exact=closed.exact), section_shape(built[MIDDLE])
     found = replace(found, backwards=_backwards(found, kind, like, middle))
@@ -92,8 +134,8 @@ def _first(
         beside = unrolled(built[MIDDLE], band, turn) if plane == UNROLLED else band
         if found.backwards:
             shapes, beside = [each.reversed() for each in shapes[::-1]], beside * [-1.0, 1.0]
+        frame = _Frame(plane=plane, turn=turn, shapes=shapes, points=beside)
         try:
-            frame = _Frame(plane=plane, turn=turn, shapes=shapes, points=beside)
             tried.append((_matched(kind, shapes[MIDDLE], beside, part), frame))
         except (DesignError, FitError) as error:
             refusal = error
@@ -104,7 +146,7 @@ def _first(
     for chosen, frame in promising:
         try:
             section = part_of_laws(_along_span(frame.shapes, _in_place(kind, frame, chosen.design)), count)
-            design = _blade_of(found, frame, kind.blade, section, like, header, count)
+            design = _blade_of(found, frame, kind, section, like, header, count)
             blades.append((compared(few.turned(frame.turn), [design], rounds=rounds)[0], frame))
         except (DesignError, FitError) as error:
             refusal = error
@@ -115,7 +157,7 @@ def _first(
     if not frame.turn:
         return 0.0, nearest, best
     # the leading edge is better known than by the closed blade
-    theta = float(np.real(Span(np.array([0.5])).values(nearest.leading_edge_theta)[0]))
+    theta = float(np.real(Span(HALF_SPAN).values(nearest.leading_edge_theta)[0]))
     law = np.array(law_points(nearest.leading_edge_theta)) - theta
     return float(frame.turn - np.radians(theta)), replace(nearest, leading_edge_theta=tuple(law.tolist())), best
 
@@ -141,13 +183,11 @@ def _nearest(blades: Sequence[tuple[Match, _Frame]]) -> tuple[Match, _Frame]:
 
 
 def _band(task: Task, closed: ModelShape, v: float) -> Reals:
-    """Points (n, 2) of the section at v of a closed blade, with the deviations of the points of the cloud beside it.
-
-    A cloud of few sections may have none so near: then the nearest points are.
-    """
+    """Points (n, 2) of the section at v of a closed blade, with the deviations of the points of the cloud beside it."""
     few = task.thinned(SEVERAL_POINTS)
     feet = nearest_footpoints(few.points, closed.sides)
     away = np.abs(feet.v - v)
+    # a cloud of few sections may have none in the band
     beside = away <= max(BAND, float(np.quantile(away, BAND)))
     section = closed.exact.section(v)
     found = []
@@ -162,17 +202,10 @@ def _band(task: Task, closed: ModelShape, v: float) -> Reals:
 
 
 def _blade_of(
-    found: ClosedChannel,
-    frame: _Frame,
-    blade: type[SectionedBlade],
-    section: Any,
-    like: Any,
-    header: DesignHeader,
-    count: int,
+    found: ClosedChannel, frame: _Frame, kind: FitFamily, section: Any, like: Any, header: DesignHeader, count: int
 ) -> Any:
     """The blade of sections that stand where those of a closed blade do."""
-    design = found.exact.design
-    metre = UNITS[header.length_unit]
+    design, metre = found.exact.design, UNITS[header.length_unit]
     linear = design.arrangement == "linear"
     place = [float(each.start[1]) / metre if linear else float(np.degrees(each.start[1])) for each in frame.shapes]
     if frame.plane == UNROLLED:
@@ -182,14 +215,13 @@ def _blade_of(
         "length_unit": header.length_unit,
         "arrangement": design.arrangement,
         "blade_count": design.blade_count,
-        "pitch": None if design.pitch is None else design.pitch * UNITS[design.length_unit] / metre,
+        "pitch": None if design.pitch is None else design.pitch * design.metre / metre,
         "section": section,
+        "leading_edge_y" if linear else "leading_edge_theta": nearest_law(place, count),
     }
-    name = "leading_edge_y" if linear else "leading_edge_theta"
-    fields[name] = nearest_law(place, count)
     if like is None:
         fields |= {edge: found.edge(edge, metre) for edge in EDGES}
-        return blade(**fields, flow_path=found.flow_path(metre, revolved=not linear), plane=frame.plane)
+        return kind.blade(**fields, flow_path=found.flow_path(metre, revolved=not linear), plane=frame.plane)
     fields |= {edge: found.edge_like(edge, getattr(like, edge), metre) for edge in EDGES}
     return replace(like, **fields)
 
@@ -200,11 +232,9 @@ def _backwards(found: ClosedChannel, kind: FitFamily, like: Any, section: Sectio
     Points do not show it: `like` does. Without it wedges open downstream, other blades lead along x, and where they
     stand radially the flow meets the rounder edge first.
     """
-    middle = np.array([0.5])
-    first, last = (found.values(edge, middle)[0] for edge in EDGES)
+    first, last = (found.values(edge, HALF_SPAN)[0] for edge in EDGES)
     if like is not None and like.leading_edge is not None:
-        metre = UNITS[like.length_unit]
-        own = [np.real(getattr(like, edge).line(metre).values(middle))[0] for edge in EDGES]
+        own = [np.real(getattr(like, edge).line(like.metre).values(HALF_SPAN))[0] for edge in EDGES]
         return float((last - first) @ (own[1] - own[0])) < 0.0
     if kind.name == "wedge-diffuser":
         first, last = section.half(np.array([0.2, 0.8]))
@@ -225,7 +255,7 @@ def _planes(task: Task, found: ClosedChannel, like: Any, middle: SectionShape) -
         return [(CONFORMAL, 0.0)]
     if like is not None:
         return [(UNROLLED if like.plane == UNROLLED else CONFORMAL, 0.0)]
-    radii = [found.values(edge, np.array([0.5]))[0, 1] for edge in EDGES]
+    radii = [found.values(edge, HALF_SPAN)[0, 1] for edge in EDGES]
     if max(radii) < SAME_RADIUS * min(radii):
         return [(CONFORMAL, 0.0)]
     turn = -float((middle.reversed() if found.backwards else middle).start[1])
@@ -234,9 +264,9 @@ def _planes(task: Task, found: ClosedChannel, like: Any, middle: SectionShape) -
 
 
 def _along_span(shapes: Sequence[SectionShape], part: Any) -> list[Any]:
-    """Parts at places along the span: that of the middle, which was searched, changed as the shapes say.
+    """Parts at places along the span: that of the middle, which was searched, changed as first parts of the shapes are.
 
-    Angles change by what the first parts of the shapes there and in the middle differ, and lengths by their ratio.
+    Angles change by differences, lengths by ratios.
     """
     firsts = [first_part(part, shape).parameters() for shape in shapes]
 
@@ -257,24 +287,15 @@ def _along_span(shapes: Sequence[SectionShape], part: Any) -> list[Any]:
 def _matched(kind: FitFamily, shape: SectionShape, points: Reals, like: Any) -> Match:
     """The match of points (n, 2) of a section by the best kind of section, or by the structure of a given part."""
     task = Task(points=points, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
-    header = DesignHeader(name="section", length_unit="m")
-    tried = compared(task.thinned(TRIAL_POINTS), first_designs(kind, shape, like, header, task))[:CONSIDERED]
+    tried = compared(task.thinned(TRIAL_POINTS), first_designs(kind, shape, like, SECTION_HEADER, task))[:CONSIDERED]
     found = [searched(task, each.design, rounds=QUICK_ROUNDS, fading=True) for each in tried]
     return found[int(np.argmin(misfits(found)))]
 
 
 def _in_place(kind: FitFamily, frame: _Frame, middle: Any) -> Any:
-    """The part of a section in the middle, searched again with the edges where the closed blade's section has them.
-
-    Its chord and place were free when kinds of section were compared; those of the blade are the closed blade's.
-    """
-    task = Task(
-        points=frame.points,
-        weights=np.ones(len(frame.points)),
-        free=FreeParameters(fixed=("chord", "leading_edge_x", "leading_edge_y")),
-        bounds={},
-    )
-    header = DesignHeader(name="section", length_unit="m")
-    first = next(iter(first_designs(kind, frame.shapes[MIDDLE], middle.section, header, task)))
+    """The part of a section in the middle, searched again with the edges where the closed blade's section has them."""
+    free = FreeParameters(fixed=("chord", "leading_edge_x", "leading_edge_y"))
+    task = Task(points=frame.points, weights=np.ones(len(frame.points)), free=free, bounds={})
+    first = next(first_designs(kind, frame.shapes[MIDDLE], middle.section, SECTION_HEADER, task))
     found: Any = searched(task, first, rounds=QUICK_ROUNDS, fading=True).design
     return found.section

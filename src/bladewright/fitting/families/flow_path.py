@@ -21,14 +21,11 @@ from bladewright.nurbs.basis import Reals, basis, uniform_knots
 WALL_COUNTS = (3, 4, 5, 7, 9)
 """points on each wall beside the blade; the fewest are taken that are near enough (design/matching_constants.md)"""
 WALL_DISTANCE = 0.01
-"""distance of a wall from the one that was found that is near enough, of its length: walls found by points alone are no
-better known (design/matching_constants.md)"""
+"""distance from the wall that was found that is near enough, of its length (design/matching_constants.md)"""
 WALL_MARGIN = 0.1
-"""distance ahead of and behind the blade of the first and last of these points, of its length
-(design/matching_constants.md)"""
+"""distance of the first and last of these points from the blade, of its length (design/matching_constants.md)"""
 CONTINUATIONS = (0.8, 0.4, 0.2)
-"""lengths of the straight continuations at whose ends points stand, of the wall's: the first are taken that do not fold
-(design/matching_constants.md)"""
+"""lengths of straight continuations that are tried in turn, of the wall's (design/matching_constants.md)"""
 DIRECTION_SHARE = 0.25
 """share of a wall beside an end that shows where it goes on: the corner itself may be a hook (design/matching.md)"""
 LEAST_RADIUS = 0.6
@@ -61,8 +58,7 @@ class ClosedChannel:
     def flow_path(self, metre: float, *, revolved: bool) -> FlowPath:
         """Hub and shroud, continued straight by equal parts of their lengths, so that the blade's ends match.
 
-        How far they are continued says which points of them are joined, which is a parameter. Where these surfaces
-        fold, fractions count from edge to edge.
+        Where these surfaces fold, fractions count from edge to edge.
         """
         lines = [self.values(name, CURVE_PLACES) for name in WALLS]
         for longest in CONTINUATIONS:
@@ -78,10 +74,8 @@ class ClosedChannel:
 
     def edge(self, name: str, metre: float) -> ThroughPoints:
         """An edge as a straight curve through a few points that reaches past both walls, as far as these may be off."""
-        walls = max(float(cumulative_length(self.values(wall, CURVE_PLACES))[-1]) for wall in WALLS)
-        own = float(cumulative_length(self.values(name, CURVE_PLACES))[-1])
-        share = EDGE_OVERREACH + 2.0 * WALL_DISTANCE * walls / own
-        first, last = self._reaching_past_walls(name, share)
+        own, *walls = (cumulative_length(self.values(curve, CURVE_PLACES))[-1] for curve in (name, *WALLS))
+        first, last = self._reaching_past_walls(name, EDGE_OVERREACH + 2.0 * WALL_DISTANCE * max(walls) / own)
         return ThroughPoints(points=_points(np.linspace(first, last, EDGE_POINTS), metre))
 
     def edge_like(self, name: str, curve: Any, metre: float) -> Meridian:
@@ -103,14 +97,12 @@ class ClosedChannel:
             rows = basis(uniform_knots(len(given), degree), degree, CURVE_PLACES)
         wanted = np.interp(rows @ given[:, held], line[order, held], line[order, 1 - held])
         given[:, 1 - held] = np.linalg.lstsq(rows, wanted, rcond=None)[0]
-        changes: dict[str, Any] = {"control_points" if curve.polygon else "points": _points(given, metre)}
-        return replace(curve, **changes)
+        points: dict[str, Any] = {"control_points" if curve.polygon else "points": _points(given, metre)}
+        return replace(curve, **points)
 
     def _reaching_past_walls(self, name: str, share: float) -> Reals:
-        """The ends (2, 2) of the straight line nearest to an edge, past both walls by a share of its length.
-
-        A corner of a closed blade may have slid along its wall, and a line through it would meet that wall twice.
-        """
+        """The ends (2, 2) of the straight line nearest to an edge, past both walls by a share of its length."""
+        # a corner may have slid along its wall, and a line through it would meet that wall twice
         line = polyfit(CURVE_PLACES, self.values(name, CURVE_PLACES), 1)
         return np.asarray(polyval(np.array([-share, 1.0 + share]), line).T)
 
@@ -134,7 +126,7 @@ def _wall(line: Reals, shares: Reals) -> Reals:
 
 
 def _outward(line: Reals) -> Reals:
-    """The directions (2, 2) in which a line leaves its ends, those of parabolas beside them: a corner may be a hook."""
+    """The directions (2, 2) in which a line leaves its ends, those of parabolas beside them."""
     count = max(3, round(DIRECTION_SHARE * len(line)))
     places = np.arange(count, dtype=np.float64)
     ends = [polyfit(places, each[:count], 2) for each in (line, line[::-1])]

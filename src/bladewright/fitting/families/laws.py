@@ -28,10 +28,9 @@ def with_mean_laws(part: Any) -> Any:
 
 
 def part_of_laws(parts: Sequence[Any], count: int = LAW_COUNT) -> Any:
-    """One part of laws of so many control points from those of sections.
+    """One part of laws of so many control points from those of sections, constants where laws leave these no shape.
 
-    Laws are constants where one, alone or together with those before it, leaves sections no shape. Raises FitError
-    where even constants do.
+    Raises FitError where even constants do.
     """
     paths = parts[MIDDLE].parameters()
     whole = _with_shape(parts, dict.fromkeys(paths, count))
@@ -71,12 +70,11 @@ def part_along_span(parts: Sequence[Any], counts: Mapping[str, int]) -> Any:
 
 def nearest_law(values: Sequence[float], count: int) -> Law:
     """The law of so many control points nearest to values (m,) of the sections, kept inside their range."""
-    at = np.asarray(values)
     if count == 1:
-        return float(np.median(at))
-    found = np.linalg.lstsq(law_basis(count, SECTION_SPANS), at, rcond=None)[0]
-    margin = 0.5 * float(np.ptp(at))
-    low, high = float(np.min(at)), float(np.max(at))
+        return float(np.median(values))
+    found = np.linalg.lstsq(law_basis(count, SECTION_SPANS), np.asarray(values), rcond=None)[0]
+    low, high = min(values), max(values)
+    margin = 0.5 * (high - low)
     # a law that runs past its values by much may leave the range in which there is a shape
     low, high = (low - margin, high + margin) if low < 0.0 else (max(low - margin, 0.5 * low), high + margin)
     return tuple(np.clip(found, low, high).tolist())

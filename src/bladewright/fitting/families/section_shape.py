@@ -14,7 +14,7 @@ from bladewright.section.section import Section
 PLACES: Reals = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 201))) / 2.0
 """places from the leading to the trailing edge at which a section is sampled"""
 INNER = (PLACES > 0.03) & (PLACES < 0.97)
-"""those away from the edges, where a camber line between the sides may bend towards a corner of a thick edge"""
+"""those away from the edges, at which the middle of the sides may bend towards a corner"""
 CAMBER_TERMS = 5
 """coefficients of the polynomial that multiplies x (1 - x) in a camber line (design/matching_constants.md)"""
 FINE_PLACES = 2001
@@ -79,21 +79,22 @@ class SectionShape:
         at = int(np.argmax(heights**2))
         return float(heights[at]), float(PLACES[at])
 
-    def within(self, first: float, last: float) -> "SectionShape":
-        """The same section between places so much of its chord after its leading and before its trailing edge.
+    @property
+    def along(self) -> Reals:
+        """The direction (2,) of the chord line."""
+        return np.array([np.cos(self.stagger), np.sin(self.stagger)])
 
-        It is left as it is where its ends are known.
-        """
+    def within(self, first: float, last: float) -> "SectionShape":
+        """The same section without so much of its chord at its leading and trailing edge, unless its ends are known."""
         if self.ends_known:
             return self
-        along = np.array([np.cos(self.stagger), np.sin(self.stagger)])
-        start = self.start + first * self.chord * along
+        start = self.start + first * self.chord * self.along
         return replace(self, chord=(1.0 - first - last) * self.chord, start=start)
 
     def reversed(self) -> "SectionShape":
         """The same section for flow from the other side: its edges exchanged, its sides kept."""
         turn = np.array([-1.0, 1.0])
-        end = self.start + self.chord * np.array([np.cos(self.stagger), np.sin(self.stagger)])
+        end = self.start + self.chord * self.along
         upper, lower = ([1.0, 0.0] + turn * side[::-1] for side in (self.upper, self.lower))
         return replace(
             self, stagger=-self.stagger, start=turn * end, upper=upper, lower=lower, edge_radii=self.edge_radii[::-1]
@@ -101,12 +102,8 @@ class SectionShape:
 
 
 def unrolled(section: Section, points: Reals, turn: float = 0.0) -> Reals:
-    """Points (n, 2) of a section in the plane (m', theta), laid out in the plane (m, r theta) [m]: dm = r dm'.
-
-    `turn` [rad] is added to theta before.
-    """
-    low, high = min(float(np.min(points[:, 0])), 0.0), max(float(np.max(points[:, 0])), 0.0)
-    at = np.linspace(low, high, FINE_PLACES)
+    """Points (n, 2) of a section in the plane (m', theta), after a turn [rad], in (m, r theta) [m]: dm = r dm'."""
+    at = np.linspace(min(np.min(points[:, 0]), 0.0), max(np.max(points[:, 0]), 0.0), FINE_PLACES)
     radius = np.real(section.scale(at))
     way = cumulative_trapezoid(radius, at, initial=0.0)
     way -= np.interp(0.0, at, way)

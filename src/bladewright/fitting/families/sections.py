@@ -38,22 +38,19 @@ from bladewright.section.checks import UNITS
 TRIAL_POINTS, TRIAL_ROUNDS = 400, 2
 """points and rounds of the search by which first designs are compared (design/matching_constants.md)"""
 CONSIDERED, PROMISING = 3, 3.0
-"""first designs that are searched on at most, and ratio of their misfits to the least (`PROMISING`): a search of a few
-rounds and control points tells them apart by about that much (design/matching.md)"""
+"""first designs that are searched on at most, and largest ratio of their misfits to the least (design/matching.md)"""
 EXACT = 1e-9
-"""misfit below which matches are alike, of the chord: the native curves of sections are as near
-(design/matching_constants.md)"""
+"""misfit below which matches are alike, of the chord: as near as native curves are (design/matching_constants.md)"""
 OUTLINE_COUNTS = (24, 32, 44)
 """numbers of points of contours that are tried in turn: searches of more end further off (design/matching.md)"""
 OUTLINE_DEVIATION = 1e-4
-"""largest distance with which a contour gets no further points where nothing is asked for, and with which exact points
-need no contour, of the chord (design/matching_constants.md)"""
+"""largest distance of exact points from a match that needs no contour, or no more points of one where nothing is asked
+for, of the chord (design/matching_constants.md)"""
 BESIDE, BY_CHANCE = 16, 1e-3
-"""points beside each other by which a misfit is told that stays with an edge, which seldom has more, and probability
-that noise alone looks like one (`BY_CHANCE`), by the chi-squared test (Pearson 1900) [-]"""
+"""points beside each other that tell a misfit at an edge, which seldom has more, and probability that noise looks like
+one, by the chi-squared test (Pearson 1900) [-]"""
 TOLERANCES = (0.0, 1e-8, 1e-6)
-"""tolerances of the native sides, of the chord, finest first: the first is taken that the design can be built with
-(design/matching_constants.md)"""
+"""tolerances of the native sides that are tried in turn, of the chord (design/matching_constants.md)"""
 
 
 def matched_section(
@@ -147,10 +144,7 @@ def _worst_neighbourhood(match: Match) -> float:
 
 
 def _has_misfit(match: Match) -> bool:
-    """Whether points lie further off than their noise, as a whole or anywhere beside each other.
-
-    The squares of so many points beside each other have a chi-squared distribution where they are noise.
-    """
+    """Whether points lie further off than their noise, as a whole or anywhere beside each other."""
     allowed = chdtri(BESIDE, BY_CHANCE / np.count_nonzero(match.rows)) / BESIDE
     return has_systematic_misfit(match) or _worst_neighbourhood(match) > allowed * match.noise_estimate.noise**2
 
@@ -171,8 +165,7 @@ def _through_points(
 ) -> tuple[Match | None, str]:
     """The match by a contour through points, by as few as are asked for, and a note of it; None where there is none.
 
-    The contours begin as the nearest profiles of each kind of trailing edge: that is chosen by the worst neighbourhood,
-    as few points show an edge.
+    The kind of trailing edge is chosen by the worst neighbourhood, as few points show an edge.
     """
     some, found = inliers_of(task, profile, QUICK_POINTS), None
     profiles: list[Any] = [each.design for each in tried]

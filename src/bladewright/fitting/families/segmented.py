@@ -6,6 +6,7 @@ from itertools import pairwise, product
 from typing import Any
 
 import numpy as np
+from numpy.polynomial import Polynomial
 from scipy.optimize import least_squares
 from scipy.spatial import cKDTree
 
@@ -24,12 +25,11 @@ from bladewright.section.segmented.skin import SEGMENTS
 PLACES: Reals = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 401))) / 2.0
 """s at which a side is sampled"""
 WINDOW = 0.05
-"""length to both sides of a cut, or of the leading edge, over which a side's direction and curvature are taken, of the
-chord: short enough for a polynomial of degree three, long enough for what points leave open [-]
+"""chord fraction to both sides of a cut, or of the leading edge, over which a cubic shows direction and curvature [-]
 (design/matching_constants.md)"""
 SCALES = (0.5, 1.0)
-"""scale factors with which a segment's search begins, as from one alone it may end at another minimum (`SCALES` in
-design/matching_constants.md) [-]"""
+"""scale factors with which a segment's search begins, one of which may end at another minimum [-]
+(design/matching_constants.md)"""
 SAMPLES: Reals = np.linspace(0.0, 1.0, 33)[1:-1]
 """parameters at which a segment is compared with the section"""
 _JOINT = SegmentJoint(height=0.0, angle=0.0, curvature=0.0)
@@ -115,7 +115,7 @@ def _nose(like: Nose | None, shape: SectionShape) -> Nose | None:
     way = np.cumsum(length(np.diff(around, axis=0, prepend=around[:1])))
     way = way - way[len(shape.lower) - 1]
     near = np.square(way) < WINDOW**2
-    fitted = [np.polynomial.Polynomial.fit(way[near], around[near, axis], 3) for axis in (0, 1)]
+    fitted = [Polynomial.fit(way[near], around[near, axis], 3) for axis in (0, 1)]
     first, second = (np.array([each.deriv(order)(0.0) for each in fitted]) for order in (1, 2))
     curvature = float(cross2(first, second)) / float(length(first)) ** 3
     radius = None if like.radius is None else float(np.clip(-1.0 / min(curvature, -1e-9), 1e-3, 0.2))
@@ -128,8 +128,8 @@ def _joined(like: AirfoilSide, line: Reals, cuts: Sequence[Any]) -> AirfoilSide:
     for cut, joint in zip(cuts, (like.front_joint, like.rear_joint), strict=True):
         x = np.linspace(cut - WINDOW, cut + WINDOW, 21)
         order = np.argsort(line[:, 0], kind="stable")
-        polynomial = np.polynomial.Polynomial.fit(x, np.interp(x, *line[order].T), 3)
-        height, slope, bend = (float(polynomial.deriv(k)(cut)) if k else float(polynomial(cut)) for k in range(3))
+        polynomial = Polynomial.fit(x, np.interp(x, *line[order].T), 3)
+        height, slope, bend = (float(polynomial.deriv(k)(cut)) for k in range(3))
         found.append(
             SegmentJoint(
                 height=height,
@@ -141,11 +141,7 @@ def _joined(like: AirfoilSide, line: Reals, cuts: Sequence[Any]) -> AirfoilSide:
 
 
 def _fitted(like: Segment, joints: tuple[JointVectors, JointVectors], line: Reals) -> Segment:
-    """The segment between two joints that is nearest to a line (n, 2) at `SAMPLES`, by least squares.
-
-    Its unknowns are both scale factors and the inner control points, which begin on the line and stay between the
-    joints; the best is taken of searches that begin with several scale factors.
-    """
+    """The segment between two joints that is nearest to a line (n, 2), by least squares: scale factors and points."""
     count, scaled = len(like.abscissas), [joint.direction is not None for joint in joints]
     start, end = (np.real(each.point[0]) for each in joints)
     distance = length(end - start)

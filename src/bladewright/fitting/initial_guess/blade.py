@@ -28,8 +28,7 @@ from bladewright.section.checks import UNITS
 from bladewright.section.laws import plain_law
 
 DRAWN_POINTS, SEARCHED_POINTS = 1200, 500
-"""points that show the slices, and points of the search (`SEARCHED_POINTS`); they bound the time
-(design/matching_constants.md)"""
+"""points that show the slices, and those of the search; they bound the time (design/matching_constants.md)"""
 NOISE, ROUNDS = 0.03, 3
 """noise assumed of a first blade, of the chord, and rounds of its search (design/matching_constants.md)"""
 
@@ -56,9 +55,9 @@ def first_blade(
 ) -> FirstBlade:
     """A blade of the unified family near points (n, 3) [m] in the machine's axes.
 
-    `pitch` [m] of a linear cascade. Where blade_count or pitch is not given, one is taken at which neighbours stand
-    apart. Where no arrangement is given, and a blade around the axis is far off, one in a cascade is sought as well,
-    with its span along z or y. Raises FitError where no blade that can be built lies near the points.
+    Where blade_count, or pitch [m] of a linear cascade, is not given, one is taken at which neighbours stand apart.
+    Where no arrangement is given, and a blade around the axis is far off, one in a cascade is sought as well, with its
+    span along z or y. Raises FitError where no blade that can be built lies near the points.
     """
     points = without_isolated_points(np.unique(np.asarray(points, dtype=np.float64), axis=0))
     header = {"name": name, "length_unit": length_unit, "blade_count": blade_count, "pitch": pitch}
@@ -82,19 +81,17 @@ def arranged_blades(points: Reals, *, arrangement: Arrangement | None = None, **
     """First blades near points (n, 3) [m] in the arrangements in which they may stand, the likelier one first.
 
     There is one alone where the arrangement is given or where the rows of points at both ends show it: they lie on
-    surfaces of revolution, or in a cascade on cylinders along y. Other arguments are those of `first_blade`. Raises
-    FitError where no blade that can be built lies near the points.
+    surfaces of revolution, or in a cascade on cylinders along y. Arguments and errors are those of `first_blade`.
     """
     first = first_blade(points, arrangement=arrangement, **header)
     if arrangement is not None or first.design.arrangement == "linear":
         return [first]
     try:
         turn = UPRIGHT if spans_along_y(points) else 0.0
-        other = first_blade(points @ about_x(turn).T, arrangement="linear", **header)
+        other = replace(first_blade(points @ about_x(turn).T, arrangement="linear", **header), turn=turn)
     except BladewrightError:
         # what cannot be sliced as a cascade is none
         return [first]
-    other = replace(other, turn=turn)
     around, level = _row_spread(points, first), _row_spread(points, other)
     if min(around, level) < ROW_SPREAD and not CLEARER_ROW < around / level < 1.0 / CLEARER_ROW:
         return [first if around < level else other]
@@ -102,10 +99,7 @@ def arranged_blades(points: Reals, *, arrangement: Arrangement | None = None, **
 
 
 def _row_spread(points: Reals, begun: FirstBlade) -> float:
-    """Scatter of points (n, 3) [m] at both ends of a first blade about rows beside its walls, of its chord [-].
-
-    It is infinite where an end has no points, or the blade no shape.
-    """
+    """Scatter of points (n, 3) [m] at both ends of a first blade about rows beside its walls, of its chord; or inf."""
     task = Task(points=points @ about_x(begun.turn).T, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
     try:
         found = evaluated(task, begun.design, noise=NOISE)
@@ -137,9 +131,9 @@ def likely_arrangements(
 def _searched_blade(
     points: Reals, channels: Sequence[SlicedChannel], header: dict[str, Any], turn: float
 ) -> tuple[float, FirstBlade]:
-    """What a short search of turned points (n, 3) [m] finds, and its mean distance from them, in chords.
+    """What a short search of turned points (n, 3) [m] finds from the first channel that it can, and its mean distance.
 
-    It begins from the first of several channels from which there is one. Raises FitError where there is none.
+    That is in chords. Raises FitError where there is none.
     """
     points = points[even_subset(points, DRAWN_POINTS)]
     some = points[random_subset(len(points), SEARCHED_POINTS)]
@@ -165,34 +159,31 @@ def _blade_of(sliced: SlicedChannel, header: dict[str, Any]) -> UnifiedBlade:
     place = slices.camber[:, 0, 1] * extents
     wide = float(np.ptp(sliced.plane.points[:, 1] * channel.extents(sliced.plane.v)[0]))
     if channel.revolved:
-        place, count = np.degrees(place), int(np.clip(np.pi / max(wide, 1e-3), 1, 10_000))
-        header = {**header, "blade_count": header["blade_count"] or count, "pitch": None}
+        path, place, count = "leading_edge_theta", np.degrees(place), int(np.clip(np.pi / max(wide, 1e-3), 1, 10_000))
+        row = {"blade_count": header["blade_count"] or count, "pitch": None}
     else:
-        place, pitch = place / metre, 2.0 * wide if header["pitch"] is None else header["pitch"]
-        header = {**header, "blade_count": None, "pitch": pitch / metre}
+        path, place, pitch = "leading_edge_y", place / metre, 2.0 * wide if header["pitch"] is None else header["pitch"]
+        row = {"blade_count": None, "pitch": pitch / metre}
     law = plain_law(fitted_law(place, slices.v, FIRST_BLADE.counts["leading_edge_theta"][1]))
     # a meridional length at the places of the slices, in extents of the plane
     scale = lengths[:, None] / (channel.radius(PLACES, slices.v) * extents[:, None])
     numbers = unified_numbers(slices, FIRST_BLADE.counts, scale)
-    numbers["leading_edge_theta" if channel.revolved else "leading_edge_y"] = law
-    return UnifiedBlade(**header, **numbers, channel=channel.part(metre))
+    return UnifiedBlade(**{**header, **row, **numbers, path: law}, channel=channel.part(metre))
 
 
 ANNULAR_AT_ONCE = 3e-3
-"""mean distance, in chords, with which slices around the axis are accepted without comparing the other arrangement
-(design/matching_constants.md)"""
+"""mean distance of slices that shows a blade around the axis at once, in chords (design/matching_constants.md)"""
 CLEARLY_LINEAR = 0.5
-"""ratio of mean distances, linear to annular, below which a blade belongs to a cascade
-(design/matching_constants.md)"""
+"""ratio of distances, linear to annular, below which a blade is of a cascade (design/matching_constants.md)"""
 ROW_BINS, ROW_HEIGHT = 16, 0.03
-"""parts of x in each of which the lowest point is sought; points up to `ROW_HEIGHT` of the span above it belong to the
-same row (design/matching_constants.md)"""
+"""parts of x in each of which the lowest point is sought, and height of a row above it, of the span
+(design/matching_constants.md)"""
 ROW_DEGREE, ROW_TURNS, ROW_OUTLIER = 5, 5, 6.7
-"""degree of the row's line, iterations in which it is found (`ROW_TURNS`), and the distance, in medians, beyond which a
-point does not belong to it (`ROW_OUTLIER`) (design/matching_constants.md)"""
+"""degree of a row's line, iterations in which it is found, and distance of points that are none of it, in medians
+(design/matching_constants.md)"""
 CLEARER_ROW, CLEAR_ROW = 0.5, 1e-3
-"""ratio of the scatter of rows in one arrangement to that in the other which decides; the lowest points on planes must
-also scatter by less than `CLEAR_ROW` of the span (design/matching.md)"""
+"""ratio of the scatters of rows in two arrangements which decides, and largest scatter, of the span, of one on a plane
+(design/matching.md)"""
 
 UPRIGHT = -0.5 * np.pi
 """angle about x that brings y to z [rad]"""

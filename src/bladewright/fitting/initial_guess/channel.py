@@ -29,8 +29,7 @@ SPAN: Reals = np.linspace(0.0, 1.0, 25)
 ALONG: Reals = np.linspace(-CONTINUED, 1.0 + CONTINUED, 129)
 """u at which they are tabulated"""
 LEAST_RADIUS = 1e-3
-"""smallest radius at which m' is counted, of the largest: blades may reach the axis, where m' is infinite
-(design/first_guesses.md)"""
+"""smallest radius, of the largest, by which m' is counted: on the axis it is infinite (design/first_guesses.md)"""
 LEAST_JACOBIAN = 0.02
 """least Jacobian of a channel, of its median; below it its curves get fewer control points (design/first_guesses.md)"""
 FOLD_MARGIN = 0.03
@@ -156,8 +155,8 @@ CHANNEL = dict(zip(CHANNEL_CURVES, (3, 3, 4, 4), strict=True))
 LAW_COUNT = 4
 """control points of their laws along the span (design/first_guesses.md)"""
 BORDER_SHARE, BORDER_POINTS, CORNER_MARGIN = 0.06, 24, 0.12
-"""share of the points (and at least `BORDER_POINTS`) beside a piece of the outline that show whether the sides meet
-there; they keep clear of its ends by `CORNER_MARGIN` of it (design/first_guesses.md)"""
+"""share and least number of points beside a piece of the outline that show whether the sides meet there, and share of
+it at its ends that shows nothing (design/first_guesses.md)"""
 WALL_OPENING_RATIO = 1.4
 """ratio of the openings from which two opposite pieces are the walls (design/first_guesses.md)"""
 RADIAL_SHARE = 0.05
@@ -196,10 +195,10 @@ def machine_coordinates(points: Reals, arrangement: str) -> Reals:
 def ranked_channels(
     machine: Reals, rows: NDArray[np.intp] | slice = slice(None), *, revolved: bool
 ) -> list[SlicedChannel]:
-    """The channel and slices for each likely choice of walls and edges, the likeliest first.
+    """The channel and slices for each likely choice of walls and edges, by all points and `rows` of them.
 
-    All points show the outline, and which of its pieces are walls; `rows` of them the slices. The likeliest leaves the
-    least product of the slices' distance from the points and the channel's from the outline (design/first_guesses.md).
+    The likeliest, which leaves the least product of the slices' distance from the points and the channel's from the
+    outline (design/first_guesses.md), comes first.
     """
     found: list[tuple[float, SlicedChannel]] = []
     boundary = alpha_boundary(machine[:, :2])
@@ -258,10 +257,7 @@ def pairings(machine: Reals, pieces: list[Reals], *, revolved: bool) -> tuple[in
 
 
 def _opening(machine: Reals, piece: Reals, *, revolved: bool) -> float | None:
-    """Root mean square tangential distance [m] of the points beside a piece of the outline from one surface.
-
-    None where too few points are beside it.
-    """
+    """Root mean square tangential distance [m] of the points beside a piece of the outline from one surface, if any."""
     way = cumulative_length(piece)
     t = np.linspace(0.0, 1.0, 400)
     line = np.stack([np.interp(t * way[-1], way, piece[:, i]) for i in (0, 1)], axis=-1)

@@ -10,11 +10,9 @@ from bladewright.nurbs.basis import Reals
 LEAST_COVERED = 0.985
 """share of the points that the outline must enclose (design/matching_constants.md)"""
 RING_PLACES = 120
-"""places of the boundary between which corners are sought; the search takes their cube in time
-(design/first_guesses.md)"""
+"""places of the boundary between which corners are sought, in a time of their cube (design/first_guesses.md)"""
 FINE_PER_PLACE, CORNER_REACH = 10, 14
-"""places of the finer ring for each of them, and how far on it the corner is sought around a cut (`CORNER_REACH`)
-(design/first_guesses.md)"""
+"""places of the finer ring for each, and how many beside a cut may be the corner (design/first_guesses.md)"""
 NEAR_PLACES = 3
 """places within which two corners are the same (design/first_guesses.md)"""
 SHORTEST_CURVE = 0.02

@@ -17,8 +17,7 @@ from bladewright.section.unified import UnifiedSection
 DRAWN_POINTS = 600
 """points that a first section is drawn through; it bounds the time (design/matching_constants.md)"""
 TURNS: tuple[float, ...] = (0.0, 0.2, -0.2, 0.5, -0.5)
-"""directions of the chord that are tried, from the longest distance between two points [rad]: that of a thick section
-may lie across it"""
+"""directions of the chord that are tried, from the longest distance [rad]: a thick section may lie across it"""
 NEAR = 2e-3
 """mean distance, of the chord, with which no other direction is tried (design/matching_constants.md)"""
 NOISE, ROUNDS = 0.01, 5

@@ -30,17 +30,15 @@ RIDGE = 1e-3
 STEEPEST = np.radians(86.0)
 """steepest angle of a chord or a camber [rad]; the family's own limit is 90 degrees (design/first_guesses.md)"""
 BANDS, BAND_POINTS = 8, 12
-"""bands along the span that show where sections begin and end, and how they are turned, and the points of one
-(design/first_guesses.md)"""
+"""bands along the span that show ends and turns of sections, and the least points of one (design/first_guesses.md)"""
 PLACES: Reals = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 42)[1:-1])) / 2.0
 """places along the chord at which the half thickness is given"""
 EDGE_PLACE = 0.02
 """place along the chord, from an edge, at which the half thickness shows the edge's radius (design/first_guesses.md)"""
-
 NOSE, LEAST_NOSE_WEIGHT, NOSE_REACH = 0.08, 0.05, 0.2
-"""distance from an edge, of the chord, from which points count in full, and their weight at the edge: the nose of a
-cambered section does not point along the chord, and the middle across the chord there is not that of the section. The
-edge is the point furthest along the camber's tangent, among those within `NOSE_REACH` (design/first_guesses.md)"""
+"""distance from an edge, in chords, from which points count in full, as a cambered section's nose does not point along
+the chord; weight of a point at the edge; and distance from the nose among whose points the edge is that furthest along
+the camber (design/first_guesses.md)"""
 EDGE_SHARE = 60
 """one in so many points of a band stands at an edge (design/first_guesses.md)"""
 
@@ -152,10 +150,9 @@ def _outermost(plane: PlanePoints, rows: Reals, places: Reals, ahead: Reals, nea
 def _placed(
     at: Reals, middle: Reals, half: Reals, frame: tuple[Reals, Reals], ends: tuple[Reals, Reals]
 ) -> tuple[Reals, Reals]:
-    """Camber lines (m, 4, 2) from edge to edge, and half thicknesses (m, k) normal to them, in frames along the chord.
+    """Camber lines (m, 4, 2) between edges `ends` (m, 2), and half thicknesses (m, k) normal to them.
 
-    `middle` and `half` are the coefficients of c and h; `frame` (m,) has where t begins and how long it is; `ends`
-    (m, 2) are the edges, between which a cubic is laid through the middle.
+    `middle` and `half` are the coefficients of c and h; `frame` (m,) has where t begins and how long it is.
     """
     first, size = frame
     start, extent = ends[0][:, 0], np.maximum(ends[1][:, 0] - ends[0][:, 0], 0.2 * size)
@@ -256,12 +253,11 @@ def unified_numbers(slices: Slices, counts: Mapping[str, tuple[int, ...]], scale
         found[name] = plain_law(np.degrees(law) if LIMITS[name][0] < 0.0 else law)
     for name in THICKNESSES:
         count, across = counts[name]
-        along = np.linalg.lstsq(law_basis(count, PLACES), (slices.half / scale).T, rcond=None)[0]
-        laws = [np.maximum(fitted_law(row, v, across), THINNEST) for row in along]
-        found[name] = tuple(plain_law(law) for law in laws)
+        along = fitted_law((slices.half / scale).T, PLACES, count)
+        found[name] = tuple(plain_law(np.maximum(fitted_law(row, v, across), THINNEST)) for row in along)
     return found
 
 
 def fitted_law(values: Reals, v: Reals, count: int) -> Reals:
-    """Control points (count,) of the law nearest to values (m,) at v (m,)."""
+    """Control points (count, ...) of the law nearest to values (m, ...) at v (m,)."""
     return np.asarray(np.linalg.lstsq(law_basis(count, v), values, rcond=None)[0])

@@ -26,11 +26,9 @@ from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.surface import Surface
 
 FOLD_GRID = (41, 21)
-"""places along and across a channel at which it is checked for folding: those of `build`, as a fold between half as
-many along ended Rotor 67 in a blade that cannot be built (design/matching.md)"""
+"""places along and across a channel at which it is checked for folding: those of `build` (design/matching.md)"""
 SMALLEST_JACOBIAN = 0.02
-"""smallest Jacobian of a channel, of its median: one that comes nearer to folding over is held there;
-half and twice change nothing measured (design/matching_constants.md)"""
+"""smallest Jacobian of a channel, of its median, at which it is held (design/matching_constants.md)"""
 WITHOUT_WARNINGS = np.errstate(invalid="ignore", divide="ignore", over="ignore")
 """of numpy about what is not finite, which the shape itself tells"""
 
@@ -117,7 +115,7 @@ def stepped(design: Design, paths: Sequence[str]) -> Any:
 def fold_margins(own: tuple[Array, Array], moved: tuple[Array, Array]) -> Array:
     """By how much a channel that has moved comes nearer to folding over than it may (..., c), of its median Jacobian.
 
-    Of both the derivatives (..., k, m, 2) of (x, r) along and across are given.
+    Both are given by derivatives (..., k, m, 2) of (x, r) along and across.
     """
     size = np.median(np.sqrt(np.prod([np.sum(np.real(each) ** 2, axis=-1) for each in own], axis=0)))
     share = cross2(*moved) / size

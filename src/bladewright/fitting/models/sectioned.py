@@ -50,20 +50,15 @@ SINGLE_SECTION = Span(np.zeros(1))
 FEASIBILITY_SPAN = Span(SURVEY)
 """places along the span at which sections must stay feasible: those by which a blade is judged before it is built"""
 SLOWEST_PACE = 0.003
-"""smallest speed of a side's own parameter by s beside an edge, of its mean speed; at 0 the family refuses the side
-(design/matching_constants.md)"""
+"""least speed of a side's parameter by s beside an edge, of its mean; refused at 0 (design/matching_constants.md)"""
 SMALLEST_GAP = 1e-4
-"""smallest distance of the two sides from each other, in chords; at 0 the family refuses them. With half and twice
-Aachen's section ends 7.2e-4 of the chord off, not 6.8e-4 (design/matching_constants.md)."""
+"""smallest distance between the two sides, in chords; refused at 0 (design/matching_constants.md)"""
 STEEP_MARGIN = 0.01
-"""share of the steepest half thickness beside a round edge that the family allows which is kept free. Half and twice
-change nothing measured (design/matching_constants.md)."""
+"""share kept free of the steepest half thickness allowed beside a round edge (design/matching_constants.md)"""
 MET_MARGIN = 0.01
-"""how far before the end of an edge curve, continued, it must meet hub and shroud, of its parameter. Half and twice
-change nothing measured (design/matching_constants.md)."""
+"""parameter before the end of a continued edge curve at which it meets its walls (design/matching_constants.md)"""
 OPENING_MARGIN = 0.003
-"""smallest distance of an edge's opening from the largest one that the family allows
-(design/matching_constants.md)"""
+"""smallest distance of an edge's opening from the largest one allowed (design/matching_constants.md)"""
 
 
 @model_of.register(PlanarSection)
@@ -124,23 +119,20 @@ class SectionedModel(SpatialModel):
 
     def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """Derivatives of the sections' infeasibility, and of how near flow path and edges are to what is refused."""
+        exact, count = shape.exact, len(_flow_path_margins(shape.exact, shape.exact))
 
-        def own(design: Any) -> Array:
+        def sections(design: Any) -> Array:
             return infeasibility(design.section, FEASIBILITY_SPAN)
 
-        def margins(design: Any) -> Array:
-            return _flow_path_margins(shape.exact, shape.exact.moved_to(design))
+        def flow_path(design: Any) -> Array:
+            return _flow_path_margins(exact, exact.moved_to(design))
 
-        count = len(_flow_path_margins(shape.exact, shape.exact))
-        rates = stepped_rates(shape, paths, "section.", len(shape.constraints) - count, own)
-        return np.concatenate([rates, stepped_rates(shape, paths, PLACING[:3], count, margins)], axis=1)
+        own = stepped_rates(shape, paths, "section.", len(shape.constraints) - count, sections)
+        return np.concatenate([own, stepped_rates(shape, paths, PLACING[:3], count, flow_path)], axis=1)
 
 
 def _flow_path_margins(exact: Any, moved: Any) -> Array:
-    """By how much a blade that has moved comes nearer to what its flow path refuses than it may (..., c).
-
-    The flow path may not fold over, and edge curves, continued, must meet hub and shroud.
-    """
+    """By how much a blade that has moved comes nearer than it may to folding, or to edges that miss a wall (..., c)."""
     own = exact.meridional_channel(ENDS, ENDS)
     # paths that are matched at the edges end where they fold
     low, high = own.extent if exact.design.flow_path.matched == "ends" else (-KEPT, 1.0 + KEPT)

@@ -32,12 +32,11 @@ from bladewright.section.unified import UnifiedSection
 from bladewright.section.unified_sides import sample_places, side_curve
 
 PLACES_ALONG_SPAN: Reals = np.linspace(0.0, 1.0, 65)
-"""places along the span among which those are sought where an edge's radius is nearest to what the thickness holds:
-five for each joint of the longest law (`MOST_SPAN` control points)."""
+"""places along the span at which edges' radii are compared with the thickness: five for each joint of the longest law
+(`MOST_SPAN` control points)"""
 COARSE_SEARCH, KNOT_SLACK = 3.0, 100.0
-"""tolerance of a search, of the design's own, from which knots may miss walls and edges by the factor `KNOT_SLACK` of
-what `build` promises. On Rotor 67 it saves half of the derivatives' time and changes distances by 1e-5 mm
-(design/matching.md)."""
+"""tolerance of a search, of the design's own, from which knots may miss walls and edges by so many times what `build`
+promises: it saves half of the derivatives' time (design/matching.md)"""
 
 
 @model_of.register(UnifiedSection)
@@ -85,11 +84,10 @@ class UnifiedBladeModel(SpatialModel):
     def _shape(self, design: Any) -> ModelShape:
         exact = exact_unified_blade(design, self.knots.tip, tentative=True)
         upper, lower = native_sides(exact.sections(self.knots.sites_v), self.knots)
-        plane = exact.sections(self.stations).plane
         return ModelShape(
             design=design,
             sides=(side_surface(upper, self.knots, DEGREE), side_surface(lower, self.knots, DEGREE)),
-            edge_radius_margins=np.real(_edge_radius_margins(design, plane.camber, plane.upper, plane.lower)),
+            edge_radius_margins=np.real(_margins_at(design, exact, self.stations)),
             constraints=np.real(_fold_margins(exact, exact.channel)),
             exact=exact,
         )
@@ -99,8 +97,8 @@ class UnifiedBladeModel(SpatialModel):
         found = np.zeros((len(paths), *shape.edge_radius_margins.shape))
         design, own = shape.design, [place for place, path in enumerate(paths) if not path.startswith("channel.")]
         steps, sources = steps_of(design, [paths[place] for place in own])
-        plane = shape.exact.moved_to(stepped_design(design, steps)).sections(self.stations).plane
-        rates = np.imag(_edge_radius_margins(design, plane.camber, plane.upper, plane.lower)) / STEP
+        moved = shape.exact.moved_to(stepped_design(design, steps))
+        rates = np.imag(_margins_at(design, moved, self.stations)) / STEP
         weights = [step.weights(self.stations) for step in steps]
         for place, (step, number) in zip(own, sources, strict=True):
             found[place] = rates[:, step] * weights[step][:, number]
@@ -120,17 +118,21 @@ def _narrowest_places(design: UnifiedBlade, exact: ExactUnifiedBlade) -> Reals:
     Searches hold the radii there and where the blade is surveyed: the exchange method of semi-infinite constraints
     (Hettich and Kortanek 1993, section 7), an exchange a round.
     """
-    plane = exact.sections(PLACES_ALONG_SPAN).plane
-    excess = np.real(_edge_radius_margins(design, plane.camber, plane.upper, plane.lower))[0]
+    excess = np.real(_margins_at(design, exact, PLACES_ALONG_SPAN))[0]
     higher = np.pad(excess, ((0, 0), (1, 1)), constant_values=-np.inf)
     return PLACES_ALONG_SPAN[np.any((excess >= higher[:, :-2]) & (excess >= higher[:, 2:]), axis=0)]
 
 
 def _fold_margins(exact: ExactUnifiedBlade, channel: TransfiniteChannel) -> Array:
     """By how much a channel (...) comes nearer to folding over than it may (..., c), of its median Jacobian."""
-    u = np.linspace(-exact.before, 1.0 + exact.after, FOLD_GRID[0])
-    v = np.linspace(0.0, 1.0, FOLD_GRID[1])
+    u, v = np.linspace(-exact.before, 1.0 + exact.after, FOLD_GRID[0]), np.linspace(0.0, 1.0, FOLD_GRID[1])
     return fold_margins(exact.channel.slopes(u, v), channel.slopes(u, v))
+
+
+def _margins_at(design: Any, exact: ExactUnifiedBlade, v: Reals) -> Array:
+    """The edge radius margins (2, ..., 4, m) of an exact blade's sections at v (m,)."""
+    plane = exact.sections(v).plane
+    return _edge_radius_margins(design, plane.camber, plane.upper, plane.lower)
 
 
 def _edge_radius_margins(design: Any, line: Array, upper: Array, lower: Array) -> Array:
