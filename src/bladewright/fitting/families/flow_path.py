@@ -1,12 +1,12 @@
 """The flow path and the edge curves of a blade from sections, as a closed blade in a channel shows them."""
 
-from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.polynomial.polynomial import polyfit, polyval
+from numpy.typing import ArrayLike
 from scipy.spatial import cKDTree
 
 from bladewright.blade.design.flow_path import FlowPath
@@ -114,7 +114,6 @@ def _wall(line: Reals, shares: Reals) -> Reals:
     longer = np.concatenate([[line[0] + first], line, [line[-1] + last]])
     along = cumulative_length(longer)
     low, high = along[1] - WALL_MARGIN * size, along[-2] + WALL_MARGIN * size
-    rows = longer
     for count in WALL_COUNTS:
         at = np.concatenate([along[:1], np.linspace(max(low, 0.5 * along[1]), high, count), along[-1:]])
         at[-2] = min(at[-2], 0.5 * (along[-1] + along[-2]))
@@ -140,5 +139,5 @@ def _shares_off_axis(line: Reals, longest: float) -> Reals:
     return np.minimum(longest, np.divide(most, fall, out=np.full(2, np.inf), where=fall > 0.0))
 
 
-def _points(rows: Reals | Sequence[Reals], metre: float) -> tuple[Point, ...]:
-    return tuple(Point(float(x) / metre, float(r) / metre) for x, r in rows)
+def _points(rows: ArrayLike, metre: float) -> tuple[Point, ...]:
+    return tuple(Point(*row) for row in (np.asarray(rows) / metre).tolist())

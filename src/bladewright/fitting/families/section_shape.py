@@ -122,7 +122,6 @@ def section_shape(section: Section, *, unroll: bool = False, turn: float = 0.0) 
     chord, stagger = float(np.hypot(*along)), float(np.arctan2(along[1], along[0]))
     upright = np.array([[np.cos(stagger), -np.sin(stagger)], [np.sin(stagger), np.cos(stagger)]]) / chord
     scale: Any = np.ones(2) if unroll else np.real(section.scale(np.array([start[0], end[0]])))
-    radii = (float(radius / (each * chord)) for radius, each in zip(section.edge_radii, scale, strict=True))
-    first, last = (min(radius, 0.5) for radius in radii)
+    first, last = (min(float(r / (each * chord)), 0.5) for r, each in zip(section.edge_radii, scale, strict=True))
     upper, lower = ((side - start) @ upright for side in (upper, lower))
     return SectionShape(chord=chord, stagger=stagger, start=start, upper=upper, lower=lower, edge_radii=(first, last))

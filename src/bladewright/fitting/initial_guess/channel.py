@@ -48,9 +48,7 @@ class FirstChannel:
         """The channel as a part of a design whose length unit is `metre` metres."""
         # walls have no corners of their own
         own = {name: rows if name in EDGES else rows[1:-1] for name, rows in self.curves.items()}
-        points: dict[str, Any] = {
-            name: tuple(Point(float(x) / metre, float(r) / metre) for x, r in rows) for name, rows in own.items()
-        }
+        points: Any = {name: tuple(Point(*row) for row in (rows / metre).tolist()) for name, rows in own.items()}
         return Channel(**points)
 
     @cached_property
@@ -97,8 +95,7 @@ class FirstChannel:
 
     def extents(self, v: Reals) -> tuple[Reals, Reals]:
         """Extents in the plane and meridional lengths [m] (n,) of the stream lines at v (n,)."""
-        first, second = (way.ev(v, 1.0) for way in self._ways)
-        return first, second
+        return self._ways[0].ev(v, 1.0), self._ways[1].ev(v, 1.0)
 
     def abscissa(self, u: Reals, v: Reals) -> Reals:
         """Abscissa (n,) in the plane of the section at v."""

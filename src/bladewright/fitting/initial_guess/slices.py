@@ -102,7 +102,9 @@ def slices_of(plane: PlanePoints, turn: Reals, stations: Reals, count: int) -> S
         (values[:, :, None] * rows[:, None, :]).reshape(len(t), -1)
         for values in (chebyshev.chebvander(2.0 * t - 1.0, 3), _half_basis(t))
     )
-    full = _even(t, plane)
+    # each part of the blade counts alike, however many points it has
+    cells = np.minimum((10.0 * t).astype(int), 9) + 10 * np.clip((4.0 * plane.v).astype(int), 0, 3)
+    full = 1.0 / np.sqrt(np.bincount(cells)[cells])
     even = full * np.clip(np.minimum(t, 1.0 - t) / NOSE, LEAST_NOSE_WEIGHT, 1.0)
     weight: Reals = even
     upper = across > middle_rows @ _ridge(middle_rows, across, even)
@@ -198,12 +200,6 @@ def _half_basis(t: Reals) -> Reals:
     """Functions of the half thickness (n, 6): round edges, two powers between, and edges with a thickness."""
     s = 1.0 - t
     return np.stack([np.sqrt(t) * s, np.sqrt(s) * t, t * s, t**2 * s, s, t], axis=-1)
-
-
-def _even(t: Reals, plane: PlanePoints) -> Reals:
-    """Weights (n,) by which each part of the blade counts alike, however many points it has."""
-    cells = np.minimum((10.0 * t).astype(int), 9) + 10 * np.clip((4.0 * plane.v).astype(int), 0, 3)
-    return np.asarray(1.0 / np.sqrt(np.bincount(cells)[cells]))
 
 
 def _ridge(matrix: Reals, rhs: Reals, weight: Reals) -> Reals:
