@@ -85,8 +85,8 @@ def first_of_family(
     refusals = list[Exception]()
     for blade, count in closed_blades(task, begun):
         try:
-            shape = model_of(blade).shape(blade)
-            turn, first, trial = _first(task.turned(begun.turn), shape, kind, like, header, count)
+            closed = model_of(blade).shape(blade)
+            turn, first, trial = _first(task.turned(begun.turn), closed, kind, like, header, count)
             return begun.turn + turn, first, trial
         except (DesignError, FitError) as error:
             refusals.append(error)

@@ -20,7 +20,6 @@ from bladewright.fitting.families.first_parts import (
 from bladewright.fitting.families.section_shape import SectionShape
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber_angle import CamberAngleSection
-from bladewright.section.checks import UNITS
 from bladewright.section.curvature_meanline import CurvatureMeanlineSection
 from bladewright.section.planar import PlanarSection
 from bladewright.section.profiles.kinds import ProfileSection
@@ -44,7 +43,7 @@ class DesignHeader:
         """Its fields; arrangement, blade count and pitch [m] of a given design where they are not stated."""
         if like is None:
             return vars(self)
-        pitch = None if like.pitch is None else like.pitch * UNITS[like.length_unit]
+        pitch = None if like.pitch is None else like.pitch * like.metre
         own = {"arrangement": like.arrangement, "blade_count": like.blade_count, "pitch": pitch}
         return {name: own.get(name) if value is None else value for name, value in vars(self).items()}
 
