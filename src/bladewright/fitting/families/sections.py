@@ -44,8 +44,8 @@ EXACT = 1e-9
 OUTLINE_COUNTS = (24, 32, 44)
 """numbers of points of contours that are tried in turn: searches of more end further off (design/matching.md)"""
 OUTLINE_DEVIATION = 1e-4
-"""largest distance of exact points from a match that needs no contour, or no more points of one where nothing is asked
-for, of the chord (design/matching_constants.md)"""
+"""largest distance with which exact points need no contour, and a contour no more points where nothing is asked for,
+of the chord (design/matching_constants.md)"""
 BESIDE, BY_CHANCE = 16, 1e-3
 """points beside each other that tell a misfit at an edge, which seldom has more, and probability that noise looks like
 one, by the chi-squared test (Pearson 1900) [-]"""
@@ -165,7 +165,8 @@ def _through_points(
 ) -> tuple[Match | None, str]:
     """The match by a contour through points, by as few as are asked for, and a note of it; None where there is none.
 
-    The kind of trailing edge is chosen by the worst neighbourhood, as few points show an edge.
+    It begins as the nearest profiles of each kind of trailing edge, which the worst neighbourhood chooses: few points
+    show an edge.
     """
     some, found = inliers_of(task, profile, QUICK_POINTS), None
     profiles: list[Any] = [each.design for each in tried]

@@ -14,7 +14,7 @@ from bladewright.errors import DesignError
 from bladewright.fitting.families.first_parts import first_part
 from bladewright.fitting.families.section_shape import SectionShape
 from bladewright.fitting.models.sectioned import SINGLE_SECTION
-from bladewright.numerics.elementary import cross2, dot, length, turned_left, unit
+from bladewright.numerics.elementary import cross2, cumulative_length, dot, length, turned_left, unit
 from bladewright.nurbs.basis import Reals, basis, greville
 from bladewright.section.profiles.points import PointsProfile
 from bladewright.section.segmented.part import JointVectors, Segmented, side_joints
@@ -112,7 +112,7 @@ def _nose(like: Nose | None, shape: SectionShape) -> Nose | None:
     if like is None or like.angle is None:
         return like
     around = np.concatenate([shape.lower[:0:-1], shape.upper])
-    way = np.cumsum(length(np.diff(around, axis=0, prepend=around[:1])))
+    way = cumulative_length(around)
     way = way - way[len(shape.lower) - 1]
     near = np.square(way) < WINDOW**2
     fitted = [Polynomial.fit(way[near], around[near, axis], 3) for axis in (0, 1)]

@@ -20,7 +20,7 @@ from bladewright.nurbs.surface import Surface
 from bladewright.section.section import Section
 
 FACE_SHARE = 0.02
-"""share of a side's parameter that half a face takes: only its parametrisation (design/matching_constants.md)"""
+"""share of a side's parameter that half a face takes, which changes no shape (design/matching_constants.md)"""
 BluntEdges = tuple[bool, bool]
 """whether the leading and the trailing edge are blunt"""
 

@@ -28,7 +28,7 @@ from bladewright.nurbs.surface import Surface
 FOLD_GRID = (41, 21)
 """places along and across a channel at which it is checked for folding: those of `build` (design/matching.md)"""
 SMALLEST_JACOBIAN = 0.02
-"""smallest Jacobian of a channel, of its median, at which it is held (design/matching_constants.md)"""
+"""smallest Jacobian to which a channel may come, of its median (design/matching_constants.md)"""
 WITHOUT_WARNINGS = np.errstate(invalid="ignore", divide="ignore", over="ignore")
 """of numpy about what is not finite, which the shape itself tells"""
 

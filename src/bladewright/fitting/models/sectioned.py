@@ -56,7 +56,7 @@ SMALLEST_GAP = 1e-4
 STEEP_MARGIN = 0.01
 """share kept free of the steepest half thickness allowed beside a round edge (design/matching_constants.md)"""
 MET_MARGIN = 0.01
-"""parameter before the end of a continued edge curve at which it meets its walls (design/matching_constants.md)"""
+"""how far before its end, in its parameter, a continued edge must meet hub and shroud (design/matching_constants.md)"""
 OPENING_MARGIN = 0.003
 """smallest distance of an edge's opening from the largest one allowed (design/matching_constants.md)"""
 
