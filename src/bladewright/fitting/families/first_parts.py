@@ -1,7 +1,7 @@
 """Where sections of the families that are one part begin: the part of numbers nearest to a section."""
 
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import singledispatch
 from typing import Any
 
@@ -112,19 +112,16 @@ def _thickness(shape: SectionShape, law: Any) -> dict[str, Any]:
     """The fields of a thickness law that a section shows."""
     given, (maximum, at) = vars(law), shape.thickest
     # the radius of curvature of an ellipse whose half height is b is b / ratio
-    ends = [
-        2.0 * r * (given.get(f"{edge}_ratio") or usual)
-        for r, (edge, usual) in zip(shape.radii, RATIOS.items(), strict=True)
-    ]
-    last = float(shape.half(np.array([0.95]))[0])
+    ratios = [given.get(f"{edge}_ratio") or usual for edge, usual in RATIOS.items()]
+    first, last = (2.0 * radius * ratio for radius, ratio in zip(shape.radii, ratios, strict=True))
+    if given.get("trailing_edge") == "blunt":
+        last = 2.0 * float(shape.half(np.array([0.95]))[0])
     known = {
         "maximum_thickness": maximum,
         "maximum_thickness_at": float(np.clip(at, 0.15, 0.8)),
-        "leading_edge_thickness": ends[0],
-        "trailing_edge_thickness": 2.0 * last if given.get("trailing_edge") == "blunt" else ends[1],
+        "leading_edge_thickness": float(np.clip(first, 0.02 * maximum, 0.6 * maximum)),
+        "trailing_edge_thickness": float(np.clip(last, 0.02 * maximum, 0.6 * maximum)),
     }
-    for name in ("leading_edge_thickness", "trailing_edge_thickness"):
-        known[name] = float(np.clip(known[name], 0.02 * maximum, 0.6 * maximum))
     return {name: value for name, value in known.items() if given.get(name) is not None}
 
 
@@ -261,10 +258,10 @@ def _(like: Profile, shape: SectionShape) -> Profile:
         "trailing_edge_thickness": max(2.0 * shape.half(np.array([0.985]))[0] / maximum, 0.01),
     }
     changes = {}
-    for each in fields(like):
-        if each.name in values and getattr(like, each.name) is not None:
-            allowed = part_range(like, each.name, values[each.name], abs(values[each.name]))
-            changes[each.name] = float(np.clip(values[each.name], allowed.low, allowed.high))
+    for name, value in values.items():
+        if vars(like).get(name) is not None:
+            allowed = part_range(like, name, value, abs(value))
+            changes[name] = float(np.clip(value, allowed.low, allowed.high))
     return replace(like, **changes)
 
 

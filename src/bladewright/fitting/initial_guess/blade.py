@@ -194,7 +194,7 @@ SPAN_POINTS = 600
 def arranged_channels(points: Reals, arrangement: Arrangement | None) -> tuple[Arrangement, list[SlicedChannel]]:
     """The arrangement of the blade of points (n, 3) [m], unless it is given, and its likely channels with slices."""
     rows = even_subset(points, DRAWN_POINTS)
-    known = arrangement or _arrangement_by_axis(points[rows]) or _arrangement_by_rows(points[rows])
+    known = arrangement or _arrangement_shown(points[rows])
     annular = [] if known == "linear" else ranked_channels(machine_coordinates(points, "annular"), rows, revolved=True)
     if known == "annular" or (annular and annular[0].mean_distance < ANNULAR_AT_ONCE):
         return "annular", annular
@@ -218,20 +218,15 @@ def spans_along_y(points: Reals) -> bool:
     return off_turned < CLEARLY_LINEAR * off
 
 
-def _arrangement_by_axis(points: Reals) -> Arrangement | None:
-    """A blade that reaches the machine axis belongs to a cascade; one along theta does not."""
-    radius = np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2)
+def _arrangement_shown(points: Reals) -> Arrangement | None:
+    """The arrangement, if any, that radii of points (n, 3) or rows at both ends show: around the axis or on planes."""
+    x, radius, z = points[:, 0], np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2), points[:, 2]
+    # a blade that reaches the machine axis belongs to a cascade; one along theta does not
     if np.min(radius) < 0.02 * np.max(radius):
         return "linear"
-    return "annular" if np.ptp(points[:, 2]) < 0.05 * np.ptp(radius) else None
-
-
-def _arrangement_by_rows(points: Reals) -> Arrangement | None:
-    """The arrangement by the rows of points (n, 3) at both ends: around the axis, or on planes; None without rows.
-
-    Sections of a blade far from the axis are matched alike on both.
-    """
-    x, radius, z = points[:, 0], np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2), points[:, 2]
+    if np.ptp(z) < 0.05 * np.ptp(radius):
+        return "annular"
+    # sections of a blade far from the axis are matched alike on both
     around, level = (np.sqrt(_row_scatter(x, span) * _row_scatter(x, -span)) for span in (radius, z))
     if around < CLEARER_ROW * level:
         return "annular"
