@@ -7,12 +7,10 @@ sides, none of which has a thickness.
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from bladewright.errors import FitError
-from bladewright.fitting.clouds.thinning import MOST_POINTS, even_subset, random_subset
+from bladewright.fitting.clouds.thinning import MOST_POINTS, even_subset, groups, random_subset
 from bladewright.nurbs.basis import Reals
 
 FEWEST_POINTS = {2: 24, 3: 100}
@@ -145,9 +143,7 @@ def _pieces(points: Reals) -> list[NDArray[np.intp]]:
     """Indices of the points of each piece that stands apart, largest first."""
     near, index = cKDTree(points).query(points, k=NEIGHBOURS + 1)
     dimension = points.shape[1]
-    rows, columns = np.nonzero(near < GAP[dimension] * float(np.percentile(near[:, 1], 95.0)))
-    graph = coo_array((np.ones(len(rows)), (rows, index[rows, columns])), shape=(len(points), len(points)))
-    _, labels = connected_components(graph, directed=False)
+    labels = groups(near < GAP[dimension] * float(np.percentile(near[:, 1], 95.0)), index)
     counts = np.bincount(labels)
     return [np.flatnonzero(labels == i) for i in np.argsort(-counts) if counts[i] >= PIECE_POINTS[dimension]]
 

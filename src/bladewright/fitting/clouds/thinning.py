@@ -1,7 +1,9 @@
-"""Fewer points of a cloud: drawn at random, spread evenly, or without those that stand alone."""
+"""Fewer points of a cloud: drawn at random, spread evenly, or without those that stand alone; and groups of them."""
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from bladewright.nurbs.basis import Reals
@@ -9,9 +11,7 @@ from bladewright.nurbs.basis import Reals
 MOST_POINTS = 20_000
 """points, drawn at random, that stand for a cloud of any size where all would take too long (design/matching.md)"""
 NEIGHBOURS, FEWEST_KNOWING = 16, 3
-"""nearest neighbours of a point, and the most points that have an isolated one among theirs: of 3 % of outliers
-that are strewn over a twentieth of the extent 86 to 100 % of those 5 % of the chord off are isolated, and at most 3 of
-5,000 good points (design/matching.md)"""
+"""nearest neighbours of a point, and the most points that have an isolated one among theirs (design/matching.md)"""
 ROUNDS = 6
 """times that isolated points are sought among the rest (design/matching_constants.md)"""
 
@@ -52,6 +52,13 @@ def _cells(places: Reals, halvings: float) -> tuple[NDArray[np.intp], Reals]:
     corner = np.floor(places * count)
     keys = corner.astype(np.intp) @ (count + 1) ** np.arange(places.shape[1])
     return keys, np.sum((places * count - corner - 0.5) ** 2, axis=1)
+
+
+def groups(linked: NDArray[np.bool_], index: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Labels (n,) of the groups that points form with those neighbours (n, k) to which they are linked (n, k)."""
+    start, way = np.nonzero(linked)
+    graph = csr_array((np.ones(len(start), dtype=np.int8), (start, index[start, way])), shape=(len(index),) * 2)
+    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.intp)
 
 
 def isolated_points(points: Reals) -> NDArray[np.bool_]:

@@ -9,70 +9,54 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 from scipy.special import bdtrc, ndtri
 
-from bladewright.fitting.clouds.thinning import even_subset, random_subset
+from bladewright.fitting.clouds.thinning import even_subset, groups, random_subset
 from bladewright.fitting.matching.footpoints import BETWEEN_EDGES, EDGE_PARAMETERS, Footpoints
 from bladewright.numerics.robust import DEVIATION_OVER_MEDIAN, median_deviation
 from bladewright.nurbs.basis import Reals
 
 NEIGHBOURS = {2: 4, 3: 8}
-"""neighbours that a point is compared with, by dimension: two to each side of a curve, a ring on a surface
-(design/matching_constants.md)."""
+"""neighbours that a point is compared with, by dimension: a ring on a surface (design/matching_constants.md)"""
 OUTLYING_NOISE = 6.0
-"""distance of an outlier, in standard deviations of the noise: two of a billion normal points are so far off
-(design/matching_constants.md)."""
+"""distance of an outlier, in standard deviations of the noise (design/matching_constants.md)"""
 NEIGHBOUR_STEP = 5.0
-"""largest difference of neighbours on one surface, in standard deviations of the noise: half and twice change nothing
-measured (design/matching_constants.md)."""
+"""largest difference of neighbours, in standard deviations of the noise (design/matching_constants.md)"""
 OUTLYING_MISFIT, OUTLYING_MISFIT_AT_EDGES = 6.0, 60.0
-"""distance of an outlier, in usual misfits of the design, and near an edge (`OUTLYING_MISFIT_AT_EDGES`), where misfits
-are large and neighbours are few. Lower values take points of an edge that is not yet found for outliers
-(design/matching_constants.md)."""
+"""distance of an outlier, in usual misfits of the design, and near an edge (design/matching_constants.md)"""
 MATCHED = 1.0 / 3.0
-"""misfit, of the noise, below which distances are noise: it adds 5 % to their standard deviation."""
+"""misfit, of the noise, below which distances are noise: it adds 5 % to their standard deviation"""
 EDGE_BAND = 0.03
-"""distance from an edge, in u, within which a point counts as near it (design/matching_constants.md)."""
+"""distance from an edge, in u, within which a point counts as near it (design/matching_constants.md)"""
 SIDES_APART = 0.05
-"""distance that the two sides of a thin blade are taken to have, of the extent, so that points of one are not
-neighbours of the other (design/matching_constants.md)."""
+"""distance that the sides of a thin blade are taken to have at least, of the extent (design/matching_constants.md)"""
 CHANCE_EXCESS = 3.0
-"""excess of the usual distance over the noise by chance, in multiples of the noise over the root of the number of
-points (design/matching_constants.md)."""
+"""excess of the usual distance over the noise by chance, in standard errors (design/matching_constants.md)"""
 LARGEST_GROUP, SMALL_GROUP = 0.05, 20
-"""largest group of outliers, as a share of the points, but `SMALL_GROUP` points are always allowed: half and twice
-change nothing measured (design/matching_constants.md)."""
+"""largest group of outliers, of all points, and points it may have in any case (design/matching_constants.md)"""
 END_BAND, WRONG_END_SHARE = 0.02, 0.2
-"""distance from an end of the blade, in v, within which points show it; where more than `WRONG_END_SHARE` of them lie
-past the end, the end is wrong and not the points (design/matching_constants.md)."""
+"""distance from an end, in v, within which points show it, and share of them past it from which it is the end that is
+wrong (design/matching_constants.md)"""
 PAST_END_BY_CHANCE, LEVEL_SLOPE = 1, 0.05
 """points level with the sides that may lie past an end by chance, and height per length past it up to which a point is
-level (`LEVEL_SLOPE`): more show that the end is wrong (design/matching.md)."""
+level (design/matching.md)"""
 LARGEST_OUTLIER_SHARE = 0.15
-"""share of outliers from which it is the design that lies off, and all points count as inliers: half and twice change
-nothing measured (design/matching_constants.md)."""
+"""share of outliers from which it is the design that lies off, and there are none (design/matching_constants.md)"""
 LOCAL_POINTS, LOCAL_OVERLAP = 128, 16
-"""points around a site whose noise and misfit are taken to be alike: a quartile of so many is known to 15 %, and few
-enough follow a scanner whose noise varies; and how many sites a point is around, about (`LOCAL_OVERLAP`)
-(design/matching_constants.md)."""
+"""points around a site whose noise and misfit are alike, and sites around a point (design/matching_constants.md)"""
 DEVIATION_OVER_QUARTILE = 1.0 / float(ndtri(5.0 / 8.0))
-"""standard deviation of normal noise over the lower quartile of its magnitude: the points of an end face beside a side,
-half of all there, spoil it less than the median."""
+"""standard deviation of normal noise over the lower quartile of its magnitude, which end faces spoil less than the
+median (design/matching_constants.md)"""
 CORE_NEIGHBOURS = 3
-"""points of the large groups beside a small one to which a step within the noise may lead: half and twice change
-nothing measured (design/matching_constants.md)."""
+"""points of large groups to which a step from a small one may lead (design/matching_constants.md)"""
 EXACT = 1e-4
-"""distance to which exact points are to be met, of the extent of the cloud or of the chord. No point nearer than that
-is an outlier, as those at an edge lie further off than the noise that all others show; half and twice change nothing
-measured (design/matching_constants.md)."""
+"""distance to which exact points are to be met, of the extent of the cloud or of the chord: no point nearer is an
+outlier (design/matching_constants.md)"""
 CROWD = 2
-"""neighbours that are outliers beside one of a part that is not found: of 1 % that scatter, 3 in 1,000 have so many."""
+"""neighbours that are outliers beside one of a part that is not found: of 1 % that scatter, 3 in 1,000 have so many"""
 SIGNIFICANCE = 1e-3
-"""probability of what is called no chance: the level of tests whose null hypothesis is a good match. (Neyman and
-Pearson 1933)."""
+"""probability of what is called no chance: the level of tests of good matches (Neyman and Pearson 1933)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -183,13 +167,6 @@ def _cut_off(
     return ~np.isin(label, label[np.concatenate([core, separate[reached]])])
 
 
-def groups(linked: NDArray[np.bool_], index: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Labels (n,) of the groups that points form with those neighbours (n, k) to which they are linked (n, k)."""
-    start, way = np.nonzero(linked)
-    graph = csr_array((np.ones(len(start), dtype=np.int8), (start, index[start, way])), shape=(len(index),) * 2)
-    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.intp)
-
-
 def crowded_at_edges(outliers: NDArray[np.bool_], footpoints: Footpoints) -> dict[str, NDArray[np.bool_]]:
     """Which of n points are outliers at an edge, by its name, where more are than chance puts there.
 
@@ -226,8 +203,7 @@ def doubted_outliers(
 
 
 COMPARED_POINTS = 20_000
-"""points that are compared with their neighbours; it bounds the time, and their noise is known to half a percent. Half
-and twice change nothing measured (design/matching_constants.md)."""
+"""points compared with their neighbours: it bounds the time (design/matching_constants.md)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -286,8 +262,8 @@ def noise_of(
 
 
 FLAT = 1e-3
-"""extent of neighbours across their row, of that along it, below which only the slope along it is told: half and twice
-change the noise of four clouds by 0.1 % (design/matching.md)"""
+"""extent of neighbours across their row, of that along it, below which only the slope along it is told
+(design/matching.md)"""
 
 
 def _linear_shares(places: Reals, beside: Reals, normals: Reals) -> Reals:
