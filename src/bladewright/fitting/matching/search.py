@@ -26,34 +26,34 @@ from bladewright.numerics.least_squares import FIRST_DAMPING, MIN_REDUCTION, con
 from bladewright.nurbs.basis import Reals
 
 EVALUATIONS_PER_ROUND = 10
-"""evaluations of the surface in a round; after it knots, outliers and noise are updated
-(design/matching_constants.md)."""
+"""evaluations in a round, after which knots, outliers and noise are updated (design/matching_constants.md)"""
 MOST_ROUNDS = 12
-"""rounds of a search at most: it bounds the time of a search that does not settle (design/matching_constants.md)."""
+"""rounds of a search at most: it bounds the time (design/matching_constants.md)"""
 SETTLED_RATIO = 0.995
-"""ratio of a round's misfit to the one before from which a search has settled: half and twice its distance to one
-change nothing measured (design/matching_constants.md)."""
+"""ratio of a round's misfit to the one before from which a search has settled (design/matching_constants.md)"""
 ROUGH_REDUCTION = 0.01
-"""predicted relative reduction of the cost that a step needs while a search is only one on the way: exact minima of
-intermediate structures are not needed (design/matching_constants.md)."""
+"""predicted relative reduction of the cost that a step on the way needs (design/matching_constants.md)"""
 REGULARISATION_DECAY = 0.5
 """ratio of the noise that a fading regularisation is for to that of the round before, at most (iteratively regularised
-Gauss-Newton: Bakushinskii 1992). Held at the misfit, which it causes itself, it kept rich matches 7e-3 of chord off
-(design/matching.md)."""
+Gauss-Newton: Bakushinskii 1992; design/matching.md)"""
 QUICK_ROUNDS = 2
 """rounds of a search on the way (design/matching_constants.md); of one on whose misfit a decision rests one more"""
 FAST_RATIO = 0.5
-"""ratio of misfits below which the next round is predicted to reduce the misfit as much again
-(design/matching_constants.md)."""
+"""ratio of misfits below which the next round is predicted to have the same (design/matching_constants.md)"""
 EXACT_MISFIT = 3e-14
-"""misfit below which nothing is left to find, of the chord: rounding of the surfaces themselves. Half and twice change
-nothing measured (design/matching_constants.md)."""
+"""misfit below which nothing is left to find, of the chord: rounding (design/matching_constants.md)"""
 NATIVE_TOLERANCE_OF_NOISE = 0.1
-"""tolerance of the native surfaces in a round, of the noise: a tenth adds less than 1 % to the distances. Knots coarser
-than the misfit needs had lost matches that were found (design/matching_constants.md)."""
+"""tolerance of the native surfaces in a round, of the noise (design/matching_constants.md)"""
 EDGE_RADIUS_MARGIN = {2: 2e-6, 3: 2e-5}
 """margin by which the control point that sets an edge's radius is held below the thickness beside it, of the section's
-extent, by dimension: a blade is refused between its stations too."""
+extent, by dimension: a blade is refused between its stations too (design/matching_constants.md)"""
+NOISE_CORRELATION = 0.15
+"""share of the misfit that neighbours have in common below which it is noise (design/matching_constants.md)"""
+FAR_OFF = 3.0
+"""deviation of the noise, by the median, beyond which an rms misfit is none of it (design/matching_constants.md)"""
+EXACT_NOISE = 1e-5
+"""noise, of the chord, below which a cloud is exact: its largest error is half of `EXACT` (Tippett 1925;
+design/matching_constants.md)"""
 
 Progress = Callable[[str], None]
 """is handed a few words on what is done"""
@@ -135,10 +135,8 @@ class Task:
         """The same task with some of the points (m,)."""
         if len(rows) == len(self.points):
             return self
-        precision = None if self.precision is None else self.precision[rows]
-        trusted = None if self.trusted is None else self.trusted[rows]
-        part = replace(self, points=self.points[rows], weights=self.weights[rows])
-        return replace(part, precision=precision, trusted=trusted)
+        every: dict[str, Any] = {name: getattr(self, name) for name in ("points", "weights", "precision", "trusted")}
+        return replace(self, **{name: given[rows] for name, given in every.items() if given is not None})
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -192,22 +190,10 @@ class Match:
         return float(np.max(self.state.footpoints.distances[self.rows]))
 
 
-NOISE_CORRELATION = 0.15
-"""share of the misfit that neighbours have in common below which the misfit is noise (design/matching_constants.md)."""
-FAR_OFF = 3.0
-"""standard deviations of the noise, by the median, beyond which the root mean square of a misfit is none of it: half
-and twice change nothing measured (design/matching_constants.md)."""
-
-
 def has_systematic_misfit(match: Match) -> bool:
     """Whether a search ended at a misfit that is not noise: neighbours share it, or few points are far off."""
     estimate = match.noise_estimate
     return estimate.correlation > NOISE_CORRELATION or match.rms * match.model.chord > FAR_OFF * estimate.noise
-
-
-EXACT_NOISE = 1e-5
-"""noise, of the chord, below which a cloud is exact: the largest of 5,000 normal errors is then half of what exact
-points are met within. The largest of many normal errors: Tippett 1925."""
 
 
 def is_exact(match: Match) -> bool:
@@ -304,13 +290,15 @@ def evaluated(task: Task, design: Design, *, noise: float | None, before: Match 
     share = noise_estimate.independent_share(len(paths))
     shown, own = ends.in_rows(model.chord), 1.0 if task.preliminary else share
     regularisation = regularisation_of(start, paths, scales.size, ends_shown=shown, independent_share=own)
+    regularisation = regularisation.scaled(task.regularisation_factor / float(np.sqrt(share / own)))
+    round_noise = misfit if noise is None else noise
     cloud_residuals = CloudResiduals(
         points=points,
         roots=np.sqrt(task.weights * rows),
         model=model,
         ends=ends,
         overhang=edge_overhang_of(points, shape.sides, rows, exact=exact, cut_edges=task.cut_edges),
-        noise=misfit if noise is None else noise,
+        noise=round_noise,
         precision=np.ones(len(points)) if task.precision is None else task.precision,
     )
     begun = PlacedCloud(shape=shape, footpoints=footpoints)
@@ -319,8 +307,8 @@ def evaluated(task: Task, design: Design, *, noise: float | None, before: Match 
         start=start,
         paths=paths,
         scales=scales,
-        regularisation=regularisation.scaled(task.regularisation_factor / float(np.sqrt(share / own))),
-        independent_share=share / task.regularisation_factor**2,
+        regularisation=regularisation.scaled(round_noise),
+        edge_height_noise=round_noise / float(np.sqrt(share / task.regularisation_factor**2)),
         begun=begun,
         margin=EDGE_RADIUS_MARGIN[points.shape[1]] * task.margin_factor,
     )
