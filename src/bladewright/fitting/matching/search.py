@@ -7,15 +7,15 @@ search in exact data ends free of it. Knots, outliers and what lies at the ends 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import chain
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bladewright.designs import Design
-from bladewright.errors import DesignError, FitError
+from bladewright.errors import BladewrightError, DesignError, FitError
 from bladewright.fitting.clouds.thinning import random_subset
-from bladewright.fitting.matching.best_so_far import BestSoFar
 from bladewright.fitting.matching.blade_ends import BladeEnds, blade_ends_of, edge_overhang_of
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.noise import EXACT, NoiseEstimate, doubted_outliers, noise_of
@@ -47,6 +47,8 @@ NATIVE_TOLERANCE_OF_NOISE = 0.1
 EDGE_RADIUS_MARGIN = {2: 2e-6, 3: 2e-5}
 """margin by which the control point that sets an edge's radius is held below the thickness beside it, of the section's
 extent, by dimension: a blade is refused between its stations too (design/matching_constants.md)"""
+KEPT_DESIGNS = 3
+"""designs of as many parameters that are kept, as the nearest may not be built (design/matching_constants.md)"""
 NOISE_CORRELATION = 0.15
 """share of the misfit that neighbours have in common below which it is noise (design/matching_constants.md)"""
 FAR_OFF = 3.0
@@ -63,6 +65,49 @@ def about_x(angle: float) -> Reals:
     """The rotation (3, 3) about x by which theta grows by an angle [rad]."""
     cosine, sine = np.cos(angle), np.sin(angle)
     return np.array([[1.0, 0.0, 0.0], [0.0, cosine, sine], [0.0, -sine, cosine]])
+
+
+@dataclass(frozen=True, eq=False)
+class BestSoFar:
+    """The nearest matches so far, by their number of parameters, as the last may be interrupted, or not built."""
+
+    found: dict[int, list["Match"]] = field(default_factory=dict)
+
+    def note(self, found: "Match") -> None:
+        """Keeps the end of a round if few of as many parameters are nearer."""
+        if np.isfinite(found.mean_distance):
+            alike = [*self.found.get(count := len(found.problem.paths), ()), found]
+            self.found[count] = sorted(alike, key=lambda each: each.mean_distance)[:KEPT_DESIGNS]
+
+    def built(
+        self, least_tolerance: float = 0.0, suits: Callable[["Match"], bool] = lambda _: True
+    ) -> tuple["Match", Any] | None:
+        """The nearest match that suits and can be built no finer than a tolerance, of the chord, and what it builds."""
+        suitable = filter(suits, chain.from_iterable(self.found.values()))
+        for found in sorted(suitable, key=lambda each: each.mean_distance):
+            tolerance = getattr(found.design, "tolerance", None)
+            design = found.design.changed({} if tolerance is None else {"tolerance": max(tolerance, least_tolerance)})
+            try:
+                return replace(found, design=design), design.build()
+            except BladewrightError:
+                continue
+        return None
+
+    def instead_of(self, refused: "Match", error: Exception, *, structured: bool) -> tuple["Match", Any, str]:
+        """The same of the family of a match that cannot be built, with its parameters or fewer, and a note.
+
+        Raises FitError where there is none.
+        """
+        paths = refused.problem.paths
+
+        def suits(found: "Match") -> bool:
+            alike = found.problem.paths == paths if structured else len(found.problem.paths) <= len(paths)
+            return alike and isinstance(found.design, type(refused.design))
+
+        found, refusal = self.built(suits=suits), f"the nearest design cannot be built ({error})"
+        if found is None:
+            raise FitError(f"{refusal}; give a start design, or bounds that keep off it") from error
+        return *found, f"{refusal}, and the nearest that can is given"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -133,8 +178,6 @@ class Task:
 
     def part(self, rows: NDArray[np.intp]) -> "Task":
         """The same task with some of the points (m,)."""
-        if len(rows) == len(self.points):
-            return self
         every: dict[str, Any] = {name: getattr(self, name) for name in ("points", "weights", "precision", "trusted")}
         return replace(self, **{name: given[rows] for name, given in every.items() if given is not None})
 
@@ -143,6 +186,7 @@ class Task:
 class Match:
     """A design found for a cloud: where a search ended."""
 
+    task: Task
     design: Design
     problem: MatchProblem
     state: PlacedCloud
@@ -153,10 +197,6 @@ class Match:
     converged: bool = False
     """whether the last descent converged"""
     interrupted: bool = False
-    turn: float = 0.0
-    """angle about x by which the task's points are turned [rad]"""
-    held: frozenset[str] = frozenset()
-    """parameters of the task that are held as the points do not determine them"""
 
     @property
     def model(self) -> Model:
@@ -226,14 +266,13 @@ def searched(
     settled: float = SETTLED_RATIO,
     fading: bool = False,
 ) -> Match:
-    """The design nearest to the cloud that a search from `start` finds, with the structure of `start`.
+    """The design nearest to the cloud that a search from `start`, a design or a match evaluated for it, finds.
 
-    `start` is a design, or a match that is evaluated for the task and the first round's noise. That is `noise`, of the
-    chord; None takes the misfit of the start. `min_reduction` is the relative reduction of the cost that a step must
-    predict. The search ends after a round that is `enough`, or that leaves more than the share `settled` of the misfit.
-    As long as the misfit is systematic, the regularisation does not rise, and falls where it is `fading`.
-    Raises FitError where the start has no shape, and KeyboardInterrupt after it has noted the best design of a round
-    that was interrupted.
+    The first round's `noise`, of the chord, is that of the match, or the misfit of the start. `min_reduction` is the
+    relative reduction of the cost that a step must predict. The search ends after a round that is `enough`, or leaves
+    more than the share `settled` of the misfit. While the misfit is systematic, the regularisation does not rise, and
+    falls where it is `fading`. Raises FitError where the start has no shape, and KeyboardInterrupt after it has noted
+    the best design of a round that was interrupted.
     """
     found, rounds_without_gain = start if isinstance(start, Match) else evaluated(task, start, noise=noise), 0
     task.best_so_far.note(found)
@@ -313,14 +352,13 @@ def evaluated(task: Task, design: Design, *, noise: float | None, before: Match 
         margin=EDGE_RADIUS_MARGIN[points.shape[1]] * task.margin_factor,
     )
     return Match(
+        task=task,
         design=design,
         problem=problem,
         state=begun,
         noise_estimate=noise_estimate,
         ends=ends,
         damping=FIRST_DAMPING if before is None else before.damping,
-        turn=task.turn,
-        held=task.held,
         evaluations=1 if before is None else before.evaluations + 1,
     )
 
@@ -346,10 +384,7 @@ def _moved(match: Match, z: Reals) -> Match:
 
 
 def without_false_outliers(task: Task, match: Match) -> Match:
-    """A match of the same structure to those outliers too that may be points of the blade, where it takes most of them.
-
-    A nose that is not found leaves its own points out, and what is searched without them never finds it.
-    """
+    """A match to those outliers too that may be points of a nose that is not found, where it takes most of them."""
     inliers, feet, systematic = match.noise_estimate.inliers, match.state.footpoints, has_systematic_misfit(match)
     doubted = doubted_outliers(~inliers & ~match.ends.on_end_face, task.points, feet, systematic=systematic)
     if not np.any(doubted):
