@@ -91,9 +91,7 @@ class _Sheet:
     def off(self, plane: Reals) -> Reals:
         """Distances (n,) from the line through the sheet's points around each place (n, 2)."""
         patches = self.points[self.tree.query(plane, k=PATCH)[1]]
-        middle = np.mean(patches, axis=1)
-        along = np.linalg.svd(patches - middle[:, None], full_matrices=False)[2][:, 0]
-        return np.abs(cross2(plane - middle, along))
+        return np.abs(cross2(plane - np.mean(patches, axis=1), _extents(patches)[1][:, 0]))
 
     def holds(self, plane: Reals, reach: float) -> NDArray[np.bool_]:
         """Which of places (n, 2) stand on the curve, nearer than `reach` to the sheet."""
@@ -128,8 +126,8 @@ def _walls(points: Reals, arrangement: Arrangement) -> Walls:
     rows = random_subset(len(points), LOOKED_AT)
     some = _Unrolled(*(each[rows] for each in every))
     near = cKDTree(points[rows]).query(points[rows], k=PATCH)[1]
-    extents, tangents = _extents(some.plane[near])
-    in_space = _extents(points[rows][near])[0]
+    extents, axes = _extents(some.plane[near])
+    tangents, in_space = axes[:, 0], _extents(points[rows][near])[0]
     # areas, and no rows of points
     sheets = (extents[:, 1] < FLAT * extents[:, 0]) & (in_space[:, 1] > AREA * in_space[:, 0])
     together = np.abs(cross2(tangents[:, None], tangents[near])) < TURN
@@ -153,10 +151,9 @@ def _walls(points: Reals, arrangement: Arrangement) -> Walls:
 
 
 def _extents(patches: Reals) -> tuple[Reals, Reals]:
-    """Extents (n, d) of patches (n, k, d) along their own axes, largest first, and the first axis (n, d)."""
-    centred = patches - np.mean(patches, axis=1)[:, None]
-    _, sizes, axes = np.linalg.svd(centred, full_matrices=False)
-    return sizes / np.sqrt(patches.shape[1]), axes[:, 0]
+    """Extents (n, d) of patches (n, k, d) along their own axes, largest first, and these axes (n, d, d)."""
+    _, sizes, axes = np.linalg.svd(patches - np.mean(patches, axis=1)[:, None], full_matrices=False)
+    return sizes / np.sqrt(patches.shape[1]), axes
 
 
 def _is_wall(sheet: _Sheet, some: _Unrolled, own: NDArray[np.bool_], others: NDArray[np.bool_], width: float) -> bool:
@@ -180,7 +177,7 @@ def _fillet_height(sheet: _Sheet, some: _Unrolled, points: Reals, others: NDArra
     rows = np.flatnonzero(others & across)
     rows = rows[np.argsort(away[rows], kind="stable")]
     patches = points[others][cKDTree(points[others]).query(points[rows], k=FILLET_PATCH)[1]]
-    normals = np.linalg.svd(patches - np.mean(patches, axis=1)[:, None], full_matrices=False)[2][:, 2]
+    normals = _extents(patches)[1][:, 2]
     upright = turned_left(sheet.tangents[nearest[rows]])
     in_space = upright[:, :1] * [1.0, 0.0, 0.0] + upright[:, 1:] * some.second[rows]
     facing = np.abs(np.sum(normals * in_space, axis=1))

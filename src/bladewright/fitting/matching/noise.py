@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 from scipy.special import bdtrc, ndtri
 
-from bladewright.fitting.clouds.thinning import even_subset, groups, random_subset
+from bladewright.fitting.clouds.thinning import MOST_POINTS, even_subset, groups, random_subset
 from bladewright.fitting.matching.footpoints import BETWEEN_EDGES, EDGE_PARAMETERS, Footpoints
 from bladewright.numerics.robust import DEVIATION_OVER_MEDIAN, median_deviation
 from bladewright.nurbs.basis import Reals
@@ -131,10 +131,7 @@ def _outliers_of(footpoints: Footpoints, weights: Reals, around: Neighbourhood) 
 
 
 def _short_of_ends(past: NDArray[np.bool_], level: NDArray[np.bool_], footpoints: Footpoints) -> NDArray[np.bool_]:
-    """Whether points (n,) are at an end of the blade that so many are past that it is the end which is wrong.
-
-    It is wrong too where most of the points past it are `level` with the sides that go on there.
-    """
+    """Whether points (n,) are at an end that is wrong: many are past it, or most of these `level` with the sides."""
     wrong = np.zeros(len(past), dtype=bool)
     for at_end in (footpoints.v < END_BAND, footpoints.v > 1.0 - END_BAND):
         past_end, onwards = int(np.count_nonzero(past & at_end)), int(np.count_nonzero(past & level & at_end))
@@ -170,9 +167,8 @@ def _cut_off(
 def crowded_at_edges(outliers: NDArray[np.bool_], footpoints: Footpoints) -> dict[str, NDArray[np.bool_]]:
     """Which of n points are outliers at an edge, by its name, where more are than chance puts there.
 
-    Outliers lie anywhere, to either side of a true surface; those of an edge that is not found lie at it (binomial
-    test: Conover 1999, section 3.1). Inside, as many are at an edge as points are; outside, an edge is nearest to what
-    came from as far around it as it is off (as many at most: Hoeffding 1956).
+    By chance inside as many are at an edge as points are; outside an edge is nearest to what came from as far around it
+    as it is off (as many at most: Hoeffding 1956). Reference: Conover 1999, section 3.1 (binomial test).
     """
     found, off, inside = {}, int(np.count_nonzero(outliers)), outliers & (footpoints.heights < 0.0)
     for name, end in EDGE_PARAMETERS.items():
@@ -192,18 +188,11 @@ def crowded_at_edges(outliers: NDArray[np.bool_], footpoints: Footpoints) -> dic
 def doubted_outliers(
     outliers: NDArray[np.bool_], points: Reals, footpoints: Footpoints, *, systematic: bool
 ) -> NDArray[np.bool_]:
-    """Which of n points (n, d) are outliers that may be points of the blade.
-
-    They crowd at an edge, or where the misfit is `systematic` have others beside them, which scattered ones hardly do.
-    """
+    """Which outliers of points (n, d) may be the blade's: they crowd at edges, or in a `systematic` misfit anywhere."""
     doubted = np.any([np.zeros_like(outliers), *crowded_at_edges(outliers, footpoints).values()], axis=0)
     if systematic:
         doubted |= outliers & (np.sum(outliers[neighbourhood_of(points, footpoints).index], axis=1) >= CROWD)
     return doubted
-
-
-COMPARED_POINTS = 20_000
-"""points compared with their neighbours: it bounds the time (design/matching_constants.md)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -218,10 +207,7 @@ class NoiseEstimate:
     """share of the inliers' variance that neighbours have in common: 0 for pure noise, 1 for a misfit of the design"""
 
     def independent_share(self, parameters: int) -> float:
-        """Share of the points that count as independent, for a design with so many parameters.
-
-        A misfit is shared by as many neighbours as there are points for two parameters.
-        """
+        """Share of the points that count as independent: those for two parameters of a design share a misfit."""
         points = float(np.count_nonzero(self.inliers)) / (2.0 * parameters)
         return 1.0 / (1.0 + self.correlation * max(points - 1.0, 0.0))
 
@@ -236,7 +222,7 @@ def noise_of(
     """
     rows = np.arange(len(points)) if weights is None else np.flatnonzero(weights > 0.0)
     if len(rows) == len(points):
-        rows = random_subset(len(points), COMPARED_POINTS)
+        rows = random_subset(len(points), MOST_POINTS)
     if len(rows) < len(points):
         return _noise_of_some(points, footpoints, weights, rows, trusted)
     weights = np.ones(len(points)) if weights is None else weights / np.mean(weights)
@@ -267,10 +253,10 @@ FLAT = 1e-3
 
 
 def _linear_shares(places: Reals, beside: Reals, normals: Reals) -> Reals:
-    """Shares (n, k) of the heights of points (n, k, 4) in what a plane through them has at places (n, 4) [m].
+    """Shares (n, k) of the heights of points (n, k, 4) in that of a plane through them at places (n, 4) [m].
 
-    The normals (n, 3) are those of the surface. The difference from a plane leaves the slope of a misfit out, which
-    neighbours to one side do not cancel (Gasser, Sroka and Jennen-Steinmetz 1986, pseudo-residuals).
+    It leaves out the slope of a misfit, which neighbours to one side do not cancel. Reference: Gasser, Sroka and
+    Jennen-Steinmetz 1986 (pseudo-residuals).
     """
     offsets = (beside - places[:, None])[..., : normals.shape[1]]
     offsets = offsets - np.sum(offsets * normals[:, None], axis=-1, keepdims=True) * normals[:, None]
@@ -287,10 +273,7 @@ def _noise_of_some(
     rows: NDArray[np.intp],
     trusted: NDArray[np.bool_] | None,
 ) -> NoiseEstimate:
-    """The noise estimate of the points in `rows`, and which of the others are inliers by it.
-
-    Those are level with an inlier beside them, or where they have no weight no further off than every inlier.
-    """
+    """The noise estimate of the points in `rows`, and which of the others are inliers by it."""
     part = footpoints.part(rows)
     known = None if trusted is None else trusted[rows]
     found = noise_of(points[rows], part, None if weights is None else weights[rows], trusted=known)

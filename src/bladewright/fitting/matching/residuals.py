@@ -1,8 +1,7 @@
 """The least-squares problem of a match: residuals in chords, and what is held where a cloud says nothing.
 
-The regularisation holds smooth laws, equal sides, nothing far from the start. Its rows are linear in the scaled
-parameters and have variance one. A search weighs them with the noise of the cloud, so that they vanish beside data that
-are exact.
+The regularisation holds smooth laws, equal sides, nothing far from the start, by rows of variance one that are linear
+in the scaled parameters. A search weighs them with the noise of the cloud, so that they vanish beside exact data.
 """
 
 import re
@@ -121,10 +120,7 @@ def _second_differences_of(line: Sequence[str]) -> Iterator[Row]:
 
 
 def _meridional_bends(start: Design) -> Iterator[Row]:
-    """Second differences of what the points of edges, walls and a channel's curves change by: these bend themselves.
-
-    Of an edge the points past hub and shroud are hardly shown by the cloud, and went off with every search.
-    """
+    """Second differences of what points of curves change by: the cloud hardly shows those past hub and shroud."""
     values, lines = start.parameters(), dict[str, list[str]]()
     for path in values:
         found = POINT_PATH.fullmatch(path)
@@ -211,10 +207,7 @@ class CloudResiduals:
         return np.concatenate(blocks) / self.model.chord
 
     def places(self, state: PlacedCloud) -> tuple[Footpoints, Reals]:
-        """The footpoints whose motion changes residuals, and the directions (n, d) that count.
-
-        First those of the points, then those of points past an end, and last those of the edges' overhang.
-        """
+        """The footpoints of points, of those past an end, and of edges, and the directions (n, d) that count."""
         footpoints, near = state.footpoints, self.ends.near
         edges = self.overhang.edges(state.shape.sides)
         directions = [-self.roots[:, None] * footpoints.normals, -(self.roots[:, None] * footpoints.beyond)[near]]
@@ -234,7 +227,10 @@ class CloudResiduals:
 
 @dataclass(kw_only=True, eq=False)
 class MatchProblem(ConstrainedProblem):
-    """Residuals of a cloud, of unusual edge heights and of the regularisation, under the shape's constraints."""
+    """Residuals of a cloud, of unusual edge heights and of the regularisation, under the shape's constraints.
+
+    `best` are the variables of least cost so far.
+    """
 
     cloud_residuals: CloudResiduals
     start: Design
@@ -301,10 +297,7 @@ class MatchProblem(ConstrainedProblem):
         return rows, margins
 
     def derivatives(self, z: Reals) -> tuple[Reals, Reals] | None:
-        """Derivatives (m, k) of all residuals and (c, k) of the constrained values.
-
-        None where the shape's stream lines turn back between the places at which it is looked at.
-        """
+        """Derivatives (m, k) of residuals and (c, k) of constrained values; None where stream lines turn back."""
         state = self.state(z)
         if state is None:
             return None
