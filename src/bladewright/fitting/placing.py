@@ -176,12 +176,7 @@ def shown_of(
     return replace(shown, cut_edges=cut & {*EDGES}), np.where(hidden, "face", "")
 
 
-def realigned(
-    turns: list[PlacedTask],
-    found: Matched,
-    place: Place,
-    match: Callable[[PlacedTask], Matched],
-) -> Matched:
+def realigned(turns: list[PlacedTask], found: Matched, place: Place, match: Callable[[PlacedTask], Matched]) -> Matched:
     """The nearest of matches that take turns with steps of the motion, while misfits are systematic and fall.
 
     `turns` holds the tasks so far, and its last is that of the match handed back.

@@ -17,10 +17,7 @@ ROUNDS = 6
 
 
 def random_subset(count: int, most: int) -> NDArray[np.intp]:
-    """Indices, in order, of at most `most` of `count` points, drawn at random but always the same.
-
-    What is drawn is as dense and as noisy as the cloud itself.
-    """
+    """Indices, in order, of at most `most` of `count` points: a random draw, always the same, as dense as the cloud."""
     if count <= most:
         return np.arange(count, dtype=np.intp)
     return np.sort(np.random.default_rng(0).choice(count, most, replace=False))
@@ -64,9 +61,8 @@ def groups(linked: NDArray[np.bool_], index: NDArray[np.intp]) -> NDArray[np.int
 def isolated_points(points: Reals) -> NDArray[np.bool_]:
     """Which of different points (n, d) stand alone: so few of the others have them among their nearest neighbours.
 
-    Strewn outliers do, and points at the border of a cloud do not, nor those where it becomes denser. Outliers are the
-    neighbours of outliers, so that it is done again without those that are found. Reference: Hautamaki, Karkkainen and
-    Franti 2004 (outlier detection using indegree number).
+    Points at the border of a cloud do not, nor where it becomes denser. Outliers are neighbours of outliers, so that it
+    is done again. Reference: Hautamaki, Karkkainen and Franti 2004 (outlier detection using indegree number).
     """
     rows = np.arange(len(points))
     for _ in range(ROUNDS):

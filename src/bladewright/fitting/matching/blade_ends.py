@@ -119,11 +119,7 @@ class BladeEnds:
 
 
 def blade_ends_of(
-    points: Reals,
-    footpoints: Footpoints,
-    shape: ModelShape,
-    rows: NDArray[np.bool_],
-    beside: Sequence[Reals] = (),
+    points: Reals, footpoints: Footpoints, shape: ModelShape, rows: NDArray[np.bool_], beside: Sequence[Reals] = ()
 ) -> BladeEnds:
     """The ends as points (n, d) show them, of those in `rows` (n,), and places (m, 2) of walls `beside` the blade."""
     on_end_face = np.zeros(len(points), dtype=bool)
@@ -198,9 +194,8 @@ def _off_row(wall: WallPoints, exact: ExactBlade) -> Reals:
     for _ in range(ROW_TURNS):
         left = distances - terms @ np.linalg.lstsq(roots[:, None] * terms, roots * distances, rcond=None)[0]
         size = np.maximum(np.abs(left), 1e-3 * float(np.median(np.abs(left))))
-        roots = np.sqrt(
-            np.where(inward * left > 0.0, OUTER_QUANTILE, 1.0 - OUTER_QUANTILE) / np.where(size > 0.0, size, 1.0)
-        )
+        share = np.where(inward * left > 0.0, OUTER_QUANTILE, 1.0 - OUTER_QUANTILE)
+        roots = np.sqrt(share / np.where(size > 0.0, size, 1.0))
         roots /= np.max(roots)
     for _ in range(ROW_SETTLING_TURNS):
         row = np.abs(left) <= ROW_WIDTH * median_deviation(left)

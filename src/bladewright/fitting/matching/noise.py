@@ -220,6 +220,7 @@ def noise_of(
     Weights (n,) are inverse variances relative to each other. A point of weight 0 tells nothing of the noise, and is an
     outlier where it lies further off than every inlier.
     """
+    trusted = np.zeros(len(points), dtype=bool) if trusted is None else trusted
     rows = np.arange(len(points)) if weights is None else np.flatnonzero(weights > 0.0)
     if len(rows) == len(points):
         rows = random_subset(len(points), MOST_POINTS)
@@ -227,9 +228,7 @@ def noise_of(
         return _noise_of_some(points, footpoints, weights, rows, trusted)
     weights = np.ones(len(points)) if weights is None else weights / np.mean(weights)
     heights, around = footpoints.heights, neighbourhood_of(points, footpoints)
-    inliers = ~_outliers_of(footpoints, weights, around)
-    inliers = inliers if trusted is None else inliers | trusted
-    index = around.index
+    inliers, index = ~_outliers_of(footpoints, weights, around) | trusted, around.index
     kept = inliers & inliers[index].all(axis=1)
     kept = kept if np.any(kept) else np.ones(len(points), dtype=bool)
     others, height, own_weight = weights[index[kept]], heights[kept], weights[kept]
@@ -267,16 +266,11 @@ def _linear_shares(places: Reals, beside: Reals, normals: Reals) -> Reals:
 
 
 def _noise_of_some(
-    points: Reals,
-    footpoints: Footpoints,
-    weights: Reals | None,
-    rows: NDArray[np.intp],
-    trusted: NDArray[np.bool_] | None,
+    points: Reals, footpoints: Footpoints, weights: Reals | None, rows: NDArray[np.intp], trusted: NDArray[np.bool_]
 ) -> NoiseEstimate:
     """The noise estimate of the points in `rows`, and which of the others are inliers by it."""
     part = footpoints.part(rows)
-    known = None if trusted is None else trusted[rows]
-    found = noise_of(points[rows], part, None if weights is None else weights[rows], trusted=known)
+    found = noise_of(points[rows], part, None if weights is None else weights[rows], trusted=trusted[rows])
     kept = part.part(found.inliers)
     if weights is not None and not np.all(weights > 0.0):
         inliers = footpoints.distances <= np.max(kept.distances)
@@ -286,4 +280,4 @@ def _noise_of_some(
         near = EXACT * float(np.max(np.ptp(points, axis=0)))
         inliers = footpoints.distances - kept.distances[beside] <= OUTLYING_NOISE * level + near
     inliers[rows] = found.inliers
-    return replace(found, inliers=inliers if trusted is None else inliers | trusted)
+    return replace(found, inliers=inliers | trusted)

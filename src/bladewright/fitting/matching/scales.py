@@ -27,9 +27,7 @@ class ParameterRange(NamedTuple):
     size: float
     """a change that matters"""
     low: float = -np.inf
-    """lowest value"""
     high: float = np.inf
-    """highest value"""
 
 
 WEDGE_RANGE, ANGLE_RANGE = ParameterRange(3.0, 0.0, LARGEST_ANGLE), ParameterRange(5.0, -LARGEST_ANGLE, LARGEST_ANGLE)
@@ -90,9 +88,7 @@ class Scales:
     size: Reals
     """(k,) a change that matters: the unit of a search, and how far a first guess may be off"""
     low: Reals
-    """(k,) lowest values"""
     high: Reals
-    """(k,) highest values"""
 
     def inside(self, values: Reals) -> NDArray[np.bool_]:
         """Which of the parameters (k,) lie on none of their bounds, apart from rounding."""

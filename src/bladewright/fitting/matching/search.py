@@ -123,9 +123,7 @@ class Task:
     bounds: Mapping[str, tuple[float, float]]
     """lowest and highest values by pattern, in the units of the fields"""
     progress: Progress = lambda _: None
-    """is handed a few words on what is done"""
     regularisation_factor: float = 1.0
-    """factor of the regularisation"""
     margin_factor: float = 1.0
     """factor of the margin that keeps edge radii from what is refused"""
     precision: Reals | None = None
@@ -147,7 +145,6 @@ class Task:
     held: frozenset[str] = frozenset()
     """parameters that are held as the points do not determine them"""
     best_so_far: BestSoFar = field(default_factory=BestSoFar)
-    """the nearest designs that searches have reached"""
 
     @property
     def dimension(self) -> int:
@@ -195,7 +192,6 @@ class Match:
     damping: float
     evaluations: int
     converged: bool = False
-    """whether the last descent converged"""
     interrupted: bool = False
 
     @property
@@ -322,7 +318,8 @@ def evaluated(task: Task, design: Design, *, noise: float | None, before: Match 
     walls = task.walls or (task.outline if task.preliminary else ())
     ends = blade_ends_of(points, footpoints, shape, noise_estimate.inliers, walls)
     rows = noise_estimate.inliers & ~ends.on_end_face
-    misfit = float(np.sqrt(np.mean(footpoints.distances[rows] ** 2))) / model.chord
+    if noise is None:
+        noise = float(np.sqrt(np.mean(footpoints.distances[rows] ** 2))) / model.chord
     # of a cloud without noise the true edge is to cost nothing, but where points are doubted
     exact = task.allow_outliers and noise_estimate.noise < EXACT * float(np.max(np.ptp(points, axis=0)))
     scales = scales_of(start, paths, model.chord, task.bounds)
@@ -330,14 +327,13 @@ def evaluated(task: Task, design: Design, *, noise: float | None, before: Match 
     shown, own = ends.in_rows(model.chord), 1.0 if task.preliminary else share
     regularisation = regularisation_of(start, paths, scales.size, ends_shown=shown, independent_share=own)
     regularisation = regularisation.scaled(task.regularisation_factor / float(np.sqrt(share / own)))
-    round_noise = misfit if noise is None else noise
     cloud_residuals = CloudResiduals(
         points=points,
         roots=np.sqrt(task.weights * rows),
         model=model,
         ends=ends,
         overhang=edge_overhang_of(points, shape.sides, rows, exact=exact, cut_edges=task.cut_edges),
-        noise=round_noise,
+        noise=noise,
         precision=np.ones(len(points)) if task.precision is None else task.precision,
     )
     begun = PlacedCloud(shape=shape, footpoints=footpoints)
@@ -346,8 +342,8 @@ def evaluated(task: Task, design: Design, *, noise: float | None, before: Match 
         start=start,
         paths=paths,
         scales=scales,
-        regularisation=regularisation.scaled(round_noise),
-        edge_height_noise=round_noise / float(np.sqrt(share / task.regularisation_factor**2)),
+        regularisation=regularisation.scaled(noise),
+        edge_height_noise=noise / float(np.sqrt(share / task.regularisation_factor**2)),
         begun=begun,
         margin=EDGE_RADIUS_MARGIN[points.shape[1]] * task.margin_factor,
     )
