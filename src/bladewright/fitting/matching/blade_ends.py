@@ -20,6 +20,7 @@ from bladewright.fitting.matching.footpoints import (
     unit_or_zero,
 )
 from bladewright.fitting.models.model import ModelShape, stepped_rates
+from bladewright.numerics.elementary import turned_left
 from bladewright.numerics.robust import median_deviation
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.surface import Surface
@@ -43,8 +44,8 @@ MOST_WALL_POINTS = 400
 FEWEST_ROW_POINTS = 5
 """points that a row at an end needs (design/matching_constants.md)"""
 ROW_WIDTH, ROW_LEAST_WIDTH = 4.5, 1e-6
-"""distance from the middle of a row within which a point belongs to it, in standard deviations, and the least such
-distance, of the places' extent (design/matching_constants.md)"""
+"""distance from the middle of a row within which a point belongs to it, in standard deviations, and the least of these,
+of the places' extent (design/matching_constants.md)"""
 ROW_DEGREE, ROW_TURNS, ROW_SETTLING_TURNS = 6, 30, 3
 """highest degree of the law by which a row may be off the wall, and turns in which it is found as a quantile, then by
 least squares (design/matching_constants.md)"""
@@ -73,15 +74,14 @@ class WallPoints:
         """Nearest parameters (m,) on the wall's curve, continued, unit normals (m, 2) and signed distances (m,) [m]."""
         line = exact.wall(self.name)
         t = np.linspace(-0.05, 1.05, 400)
-        _, index = cKDTree(np.real(line.values(t))).query(self.places)
-        t = t[index]
+        t = t[cKDTree(np.real(line.values(t))).query(self.places)[1]]
         for _ in range(6):
             value, first, second = (np.real(line.values(t, order)) for order in range(3))
             miss = value - self.places
             rise = np.sum(first**2, axis=-1) + np.sum(miss * second, axis=-1)
             t = np.clip(t - np.sum(miss * first, axis=-1) / np.where(rise > 0.0, rise, np.inf), -0.1, 1.1)
         value, first = (np.real(line.values(t, order)) for order in range(2))
-        normal = np.stack([-first[:, 1], first[:, 0]], axis=-1) / np.sqrt(np.sum(first**2, axis=-1))[:, None]
+        normal = unit_or_zero(turned_left(first))
         return t, normal, np.asarray(np.sum(normal * (self.places - value), axis=-1))
 
     def motion_rates(self, exact: ExactBlade, points: Reals, rates: Reals) -> Reals:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from bladewright.numerics.elementary import turned_left
 from bladewright.nurbs.basis import Reals, corners
 from bladewright.nurbs.closest import CONVERGED, Descents, Places
 from bladewright.nurbs.curve import Curve
@@ -102,7 +103,7 @@ def nearest_footpoints(
 
 
 def _facing_corners(footpoints: Footpoints, sides: Sequence[Side]) -> Footpoints:
-    """The footpoints with the normals at corners facing their points: those of the sides would make their way free."""
+    """The footpoints, at corners with normals to their points: by those of the sides points ahead cost nothing."""
     corner = np.zeros(len(footpoints.u), dtype=bool)
     for number, side in enumerate(sides):
         knots, degree = (side.knots, side.degree) if isinstance(side, Curve) else (side.knots_u, side.degree_u)
@@ -135,7 +136,7 @@ def footpoints_at(points: Reals, sides: Sequence[Side], side: NDArray[np.intp], 
         if isinstance(shape, Curve):
             at[rows] = shape(u[rows])
             along = np.asarray(shape.derivative(u[rows]))
-            normals[rows] = sign * unit_or_zero(np.stack([-along[:, 1], along[:, 0]], axis=-1))
+            normals[rows] = sign * unit_or_zero(turned_left(along))
             continue
         at[rows] = shape(u[rows], v[rows])
         along, across = (np.asarray(shape.derivative(u[rows], v[rows], *order)) for order in ((1, 0), (0, 1)))

@@ -32,7 +32,7 @@ EDGE_BAND = 0.03
 SIDES_APART = 0.05
 """distance that the sides of a thin blade are taken to have at least, of the extent (design/matching_constants.md)"""
 CHANCE_EXCESS = 3.0
-"""excess of the usual distance over the noise by chance, in standard errors (design/matching_constants.md)"""
+"""excess of the usual distance by chance, of the noise over the root of their number (design/matching_constants.md)"""
 LARGEST_GROUP, SMALL_GROUP = 0.05, 20
 """largest group of outliers, of all points, and points it may have in any case (design/matching_constants.md)"""
 END_BAND, WRONG_END_SHARE = 0.02, 0.2

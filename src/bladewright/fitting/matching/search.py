@@ -52,7 +52,7 @@ KEPT_DESIGNS = 3
 NOISE_CORRELATION = 0.15
 """share of the misfit that neighbours have in common below which it is noise (design/matching_constants.md)"""
 FAR_OFF = 3.0
-"""deviation of the noise, by the median, beyond which an rms misfit is none of it (design/matching_constants.md)"""
+"""rms misfit, in standard deviations by the median, beyond which it is no noise (design/matching_constants.md)"""
 EXACT_NOISE = 1e-5
 """noise, of the chord, below which a cloud is exact: its largest error is half of `EXACT` (Tippett 1925;
 design/matching_constants.md)"""
