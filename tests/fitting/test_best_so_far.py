@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.matching.best_so_far import BestSoFar
+from bladewright.fitting.matching.search import BestSoFar
 from machines import example
 
 SECTION = example("turbine-section")

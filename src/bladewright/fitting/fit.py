@@ -142,7 +142,7 @@ def fit(
         walls = walls_of(every.points, header.arrangement or getattr(start or like, "arrangement", None))
         shown, hidden = shown_of(every, start, finishing, free_parameters, walls)
         refuse_hidden_blade(shown.points, len(points))
-        refuse_several_blades(every.points[~walls.on_curve])
+        refuse_several_blades(every.points[walls.kinds != "wall"])
         return PlacedTask(motion=motion, notes=notes, start=start, every=every, shown=shown, hidden=hidden)
 
     def matched(here: PlacedTask) -> Matched:

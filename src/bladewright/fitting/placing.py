@@ -1,13 +1,11 @@
 """A cloud in the machine's axes without what cuts, fillets and walls hide, and the motion there, found anew.
 
-A match is of the blade before the cuts and fillets of a given design, and the design that is found has them again.
-Where a ball of radius r rolls along a wall and a side that meet at the angle a, it touches the side r (1 + cos a) above
-the wall: no higher than 2 r. Edges and ends that are cut off, and walls that fillets hide, are held as they are given.
+A match is of the blade before the cuts and fillets of a given design, which the design that is found has again. A ball
+of radius r that rolls along a wall and a side touches the side no higher than 2 r.
 
 A start that is off the true shape is laid on the cloud with a tilt that no parameter of a blade around an axis takes
-away, and that a registration onto the blade found takes away but slowly, as the shape has followed it. So the motion
-takes steps of Gauss and Newton on the residuals that no change of the shape takes away (variable projection: Golub and
-Pereyra 1973, Kaufman 1975), and a match follows each.
+away, and that the shape follows. So the motion takes steps of Gauss and Newton on the residuals that no change of the
+shape takes away (variable projection: Golub and Pereyra 1973, Kaufman 1975), and a match follows each.
 """
 
 from collections.abc import Callable, Sequence
@@ -49,18 +47,14 @@ from bladewright.fitting.registration import (
 MOST_REALIGNMENTS = 4
 """realignments at most: a match follows each, and they bound the time to five matches (design/matching_constants.md)"""
 GAIN = 0.9
-"""ratio of the misfits after and before a realignment above which it is not worth a match
-(design/matching_constants.md)"""
+"""ratio of misfits after and before a realignment from which it is not worth a match (design/matching_constants.md)"""
 LONGEST_STEP = 0.2
-"""longest step of the motion, of the cloud's extent, within which residuals and shape are nearly linear: some 10 deg.
-Half and twice change nothing measured (design/matching_constants.md)."""
+"""longest step of the motion, of the cloud's extent, in which residuals are linear (design/matching_constants.md)"""
 WEAKEST_SLOPE = 1e-10
-"""singular value of the slopes, of the largest, below which it is rounding: half and twice change nothing measured
-(design/matching_constants.md)"""
+"""singular value of the slopes, of the largest, below which it is rounding (design/matching_constants.md)"""
 ON_CUT = 1e-3
-"""distance from a cut, of the cloud's extent, within which points may lie on its face: 0.1 mm of 100 mm, some standard
-deviations of a scan's noise. Points of the sides there are not weighed, but measured. Half and twice change nothing
-measured (design/matching_constants.md)."""
+"""distance from a cut, of the cloud's extent, within which points may lie on its face and are measured, not weighed
+(design/matching_constants.md)"""
 CUT_PLACES = {"hub": "hub", "tip": "shroud", **{edge: edge for edge in EDGES}}
 """the edge or wall in whose place a cut is"""
 
@@ -84,8 +78,7 @@ def without_finishing(
 ) -> tuple[RowDesign | None, Design | None, Design | None]:
     """The first with cuts and fillets of a start and what the design is to be like, and both without them.
 
-    Without a start the search begins with the one that it is to be like, for what is cut off or behind a fillet is in
-    no cloud.
+    That one is the start where there is none: no cloud holds what is cut off or behind a fillet.
     """
     given = next((each for each in (start, like) if isinstance(each, RowDesign) and each.plain is not each), None)
     if given is None:
@@ -125,15 +118,15 @@ UPRIGHT_NOTE = (
 
 def turned_with(here: PlacedTask, match: Match) -> PlacedTask:
     """What was sought, with the points turned about x as a match of them is."""
-    if not match.turn:
+    if not match.task.turn:
         return here
-    step = Motion(rotation=about_x(match.turn), translation=np.zeros(3))
+    step = Motion(rotation=about_x(match.task.turn), translation=np.zeros(3))
     linear = getattr(match.design, "arrangement", None) == "linear"
     return replace(
         here,
         motion=step if here.motion is None else composed(step, here.motion),
-        notes=(*here.notes, UPRIGHT_NOTE if linear else TURNED_NOTE.format(np.degrees(match.turn))),
-        every=here.every.turned(match.turn),
+        notes=(*here.notes, UPRIGHT_NOTE if linear else TURNED_NOTE.format(np.degrees(match.task.turn))),
+        every=here.every.turned(match.task.turn),
     )
 
 
@@ -164,10 +157,7 @@ Matched = tuple[Match, Any, str]
 def shown_of(
     every: Task, start: Design | None, given: RowDesign | None, free: FreeParameters, walls: Walls
 ) -> tuple[Task, NDArray[np.str_] | None]:
-    """The task without what cuts and fillets of a given design, and walls, hide, and (n,) what these are.
-
-    Of cuts and fillets it is a `face`, where points are as near as a plain design tells; what they would show is held.
-    """
+    """The task without what walls, cuts and fillets hide, and (n,) what these are; what they would show is held."""
     if given is None or start is None:
         if not walls.places:
             return every, None
@@ -182,21 +172,14 @@ def shown_of(
     on_cut = ON_CUT * float(np.max(np.ptp(every.points, axis=0)))
     off = off_walls(every.points, finished(start, given).build())
     hidden = np.any([far < reach.get(name, on_cut) for name, far in off.items()], axis=0)
-    held = replace(free, unseen=frozenset(unseen))
-    shown = replace(every.part(np.flatnonzero(~hidden)), free=held, cut_edges=cut & {*EDGES})
-    return shown, np.where(hidden, "face", "")
+    shown = replace(every.part(np.flatnonzero(~hidden)), free=replace(free, unseen=frozenset(unseen)))
+    return replace(shown, cut_edges=cut & {*EDGES}), np.where(hidden, "face", "")
 
 
-def realigned(
-    turns: list[PlacedTask],
-    found: Matched,
-    place: Place,
-    match: Callable[[PlacedTask], Matched],
-) -> Matched:
-    """The nearest of matches that take turns with steps of the motion.
+def realigned(turns: list[PlacedTask], found: Matched, place: Place, match: Callable[[PlacedTask], Matched]) -> Matched:
+    """The nearest of matches that take turns with steps of the motion, while misfits are systematic and fall.
 
-    They go on while deviations go on from point to point, and fall. `turns` holds the tasks so far, and its last is
-    that of the match handed back.
+    `turns` holds the tasks so far, and its last is that of the match handed back.
     """
     for _ in range(MOST_REALIGNMENTS):
         here, before = turns[-1], found[0]

@@ -23,6 +23,7 @@ from bladewright.fitting.assessment.coverage import (
 from bladewright.fitting.assessment.estimates import ParameterEstimates
 from bladewright.fitting.assessment.measurement import Measurement
 from bladewright.fitting.assessment.result import with_unit
+from bladewright.fitting.clouds.thinning import groups
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS
 from bladewright.fitting.matching.footpoints import BETWEEN_EDGES, EDGE_PARAMETERS, Footpoints
 from bladewright.fitting.matching.noise import (
@@ -31,7 +32,6 @@ from bladewright.fitting.matching.noise import (
     NEIGHBOURS,
     SIGNIFICANCE,
     crowded_at_edges,
-    groups,
 )
 from bladewright.fitting.matching.search import Match
 from bladewright.nurbs.basis import Reals

@@ -1,18 +1,15 @@
 """Clouds as they come, and what cannot be fitted of them: too few points, one side of a blade, several blades.
 
 Several blades are a wheel that turns onto itself, or pieces that stand apart and are each other's copies. A single
-blade does neither: the further it is turned about the axis, the further it is from itself; and its pieces are rows or
-sides, none of which has a thickness.
+blade is the further from itself the further it is turned, and its pieces are rows or sides without thickness.
 """
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from bladewright.errors import FitError
-from bladewright.fitting.clouds.thinning import MOST_POINTS, even_subset, random_subset
+from bladewright.fitting.clouds.thinning import MOST_POINTS, even_subset, groups, random_subset
 from bladewright.nurbs.basis import Reals
 
 FEWEST_POINTS = {2: 24, 3: 100}
@@ -22,11 +19,9 @@ FLATTEST = 1e-5
 SHEET_SAMPLE = 3000
 """points by which a cloud of one side only is recognised; it bounds the time (design/matching_constants.md)"""
 THINNEST_BLADE = 1.3e-3
-"""roughness, of its width, below which a cloud is a smooth sheet: one side and no blade
-(design/matching_constants.md)"""
+"""roughness, of its width, below which a cloud is one side and no blade (design/matching_constants.md)"""
 COMPARED_POINTS = 6000, 2000
-"""points among which neighbours are joined: many part blades that stand close, few join the rows of one
-(design/matching_constants.md)"""
+"""points among which neighbours are joined: many part close blades, few join rows (design/matching_constants.md)"""
 NEIGHBOURS = 8
 """neighbours with which a point may be joined; it bounds the time (design/matching_constants.md)"""
 GAP = {2: 4.5, 3: 2.5}
@@ -61,15 +56,13 @@ def checked_cloud(cloud: ArrayLike) -> Reals:
             f"{np.count_nonzero(bad)} of {len(points)} points are not finite numbers, the first of them point "
             f"{int(np.argmax(bad))}: leave them out"
         )
-    different = np.unique(points[random_subset(len(points), MOST_POINTS)], axis=0)
-    dimension = points.shape[1]
+    different, dimension = np.unique(points[random_subset(len(points), MOST_POINTS)], axis=0), points.shape[1]
     if len(different) < FEWEST_POINTS[dimension]:
         raise FitError(
             f"the cloud has {len(different)} different points: at least {FEWEST_POINTS[dimension]} are needed; "
             "give more points of the blade's surface"
         )
-    middle = np.mean(different, axis=0)
-    spread = np.linalg.svd(different - middle, compute_uv=False)
+    spread = np.linalg.svd(different - np.mean(different, axis=0), compute_uv=False)
     if spread[1] < FLATTEST * spread[0]:
         raise FitError(
             f"all {len(points)} points lie on one line: a blade has two sides; give points of its whole surface"
@@ -79,8 +72,7 @@ def checked_cloud(cloud: ArrayLike) -> Reals:
             f"all {len(points)} points lie on one plane: give two columns, x and y, for a section, or points of "
             "sections at several places along the span"
         )
-    some = different[np.random.default_rng(0).permutation(len(different))[:SHEET_SAMPLE]]
-    if is_one_sided(some):
+    if is_one_sided(different[np.random.default_rng(0).permutation(len(different))[:SHEET_SAMPLE]]):
         raise FitError(
             "the cloud holds one side of a blade alone, a sheet without thickness: give the points of both sides"
         )
@@ -127,8 +119,7 @@ def is_one_sided(points: Reals) -> bool:
 
 def pitch_found(points: Reals) -> str | None:
     """By how much, in words, a blade in the cloud (n, 2) or (n, 3) [m] lies beside the next; None of a single blade."""
-    wheel = _pitch_of_wheel(points) if points.shape[1] == 3 else None
-    if wheel is not None:
+    if points.shape[1] == 3 and (wheel := _pitch_of_wheel(points)):
         return wheel
     for count in COMPARED_POINTS:
         some = points[even_subset(points, count)]
@@ -145,9 +136,7 @@ def _pieces(points: Reals) -> list[NDArray[np.intp]]:
     """Indices of the points of each piece that stands apart, largest first."""
     near, index = cKDTree(points).query(points, k=NEIGHBOURS + 1)
     dimension = points.shape[1]
-    rows, columns = np.nonzero(near < GAP[dimension] * float(np.percentile(near[:, 1], 95.0)))
-    graph = coo_array((np.ones(len(rows)), (rows, index[rows, columns])), shape=(len(points), len(points)))
-    _, labels = connected_components(graph, directed=False)
+    labels = groups(near < GAP[dimension] * float(np.percentile(near[:, 1], 95.0)), index)
     counts = np.bincount(labels)
     return [np.flatnonzero(labels == i) for i in np.argsort(-counts) if counts[i] >= PIECE_POINTS[dimension]]
 
@@ -173,10 +162,7 @@ def _moved_onto(piece: Reals, other: Reals) -> tuple[float, str] | None:
 
 
 def _pitch_of_wheel(points: Reals) -> str | None:
-    """The pitch of blades all around the axis, in words.
-
-    Turned by the pitch either way, most points lie twice as near to the cloud as turned by half of it.
-    """
+    """The pitch of blades all around the axis, in words: turned by it most points lie nearer than turned by half."""
     tree, some = cKDTree(points), points[random_subset(len(points), TURNED_POINTS)]
 
     def away(turn: float) -> float:

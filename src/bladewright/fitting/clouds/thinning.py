@@ -1,7 +1,9 @@
-"""Fewer points of a cloud: drawn at random, spread evenly, or without those that stand alone."""
+"""Fewer points of a cloud: drawn at random, spread evenly, or without those that stand alone; and groups of them."""
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from bladewright.nurbs.basis import Reals
@@ -9,18 +11,13 @@ from bladewright.nurbs.basis import Reals
 MOST_POINTS = 20_000
 """points, drawn at random, that stand for a cloud of any size where all would take too long (design/matching.md)"""
 NEIGHBOURS, FEWEST_KNOWING = 16, 3
-"""nearest neighbours of a point, and the most points that have an isolated one among theirs: of 3 % of outliers
-that are strewn over a twentieth of the extent 86 to 100 % of those 5 % of the chord off are isolated, and at most 3 of
-5,000 good points (design/matching.md)"""
+"""nearest neighbours of a point, and the most points that have an isolated one among theirs (design/matching.md)"""
 ROUNDS = 6
 """times that isolated points are sought among the rest (design/matching_constants.md)"""
 
 
 def random_subset(count: int, most: int) -> NDArray[np.intp]:
-    """Indices, in order, of at most `most` of `count` points, drawn at random but always the same.
-
-    What is drawn is as dense and as noisy as the cloud itself.
-    """
+    """Indices, in order, of at most `most` of `count` points: a random draw, always the same, as dense as the cloud."""
     if count <= most:
         return np.arange(count, dtype=np.intp)
     return np.sort(np.random.default_rng(0).choice(count, most, replace=False))
@@ -54,12 +51,18 @@ def _cells(places: Reals, halvings: float) -> tuple[NDArray[np.intp], Reals]:
     return keys, np.sum((places * count - corner - 0.5) ** 2, axis=1)
 
 
+def groups(linked: NDArray[np.bool_], index: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Labels (n,) of the groups that points form with those neighbours (n, k) to which they are linked (n, k)."""
+    start, way = np.nonzero(linked)
+    graph = csr_array((np.ones(len(start), dtype=np.int8), (start, index[start, way])), shape=(len(index),) * 2)
+    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.intp)
+
+
 def isolated_points(points: Reals) -> NDArray[np.bool_]:
     """Which of different points (n, d) stand alone: so few of the others have them among their nearest neighbours.
 
-    Strewn outliers do, and points at the border of a cloud do not, nor those where it becomes denser. Outliers are the
-    neighbours of outliers, so that it is done again without those that are found. Reference: Hautamaki, Karkkainen and
-    Franti 2004 (outlier detection using indegree number).
+    Points at the border of a cloud do not, nor where it becomes denser. Outliers are neighbours of outliers, so that it
+    is done again. Reference: Hautamaki, Karkkainen and Franti 2004 (outlier detection using indegree number).
     """
     rows = np.arange(len(points))
     for _ in range(ROUNDS):

@@ -11,12 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from bladewright.blade.design.row_design import Arrangement
-from bladewright.fitting.clouds.thinning import random_subset
+from bladewright.fitting.clouds.thinning import groups, random_subset
 from bladewright.numerics.elementary import cross2, length, turned_left
 from bladewright.numerics.robust import median_deviation
 from bladewright.nurbs.basis import Reals
@@ -24,49 +22,38 @@ from bladewright.nurbs.basis import Reals
 LOOKED_AT = 6000
 """points, drawn at random, among which sheets are sought; it bounds the time (design/matching_constants.md)"""
 PATCH, BESIDE = 12, 24
-"""points of a patch, whose plane is known to some degrees, and of the surroundings of a point in the meridional plane,
-both sides of the blade among them (design/matching_constants.md)"""
+"""points of a patch, whose plane is known to some degrees, and of the surroundings of a point in the meridional plane
+(design/matching_constants.md)"""
 FLAT, AREA = 0.1, 0.3
 """ratio of a patch's extents in the meridional plane up to which it stands on a curve there, and in space from which it
-is an area and no row of points (`AREA`) (design/matching_constants.md)"""
+is an area and no row of points (design/matching_constants.md)"""
 TURN = 0.3
-"""sine of the angle between neighbouring patches of one sheet at most: without, 63 of 23,731 points of hubs fewer are
-told (design/matching.md)"""
+"""sine of the angle between neighbouring patches of one sheet at most (design/matching.md)"""
 FEWEST_SHARE = 0.01
 """share of the points that the smallest wall has, and two patches in any case (design/matching_constants.md)"""
 MOST_SHEETS = 0.5
-"""share of the points off a wall that may stand on curves too: a blade fills an area of the meridional plane, but where
-it is seen along its span, as one at the side of the axis is while a cascade is tried. Beside walls 0.20 do at most, of
-such blades 0.56 at least (design/matching.md)"""
+"""share of the points off a wall that may stand on curves too: blades do that are seen along their span, as one at the
+side of the axis is while a cascade is tried (design/matching.md)"""
 WIDER = 1.35
-"""width of a wall along the pitch, of the largest thickness beside it: sheets of clouds without walls reach 1.33, walls
-that reach half a chord to each side begin at 1.36 (design/matching.md)"""
+"""width of a wall along the pitch, of the largest thickness beside it (design/matching.md)"""
 FILLET_PATCH = 8
 """points of a patch of a fillet, which is small (design/matching_constants.md)"""
 AT_WALL, ON_FILLET = 0.65, 0.5
 """cosine between the normals of wall and surface, by the median of `BESIDE` points, from which the points next to a
-wall are a fillet's, and down to which those above are (`ON_FILLET`): next to 1,000 points of a wall it is 0.74 at least
-with fillets, and 0.58 at most without, of a blade that leans by as much (design/matching.md)"""
+wall are a fillet's, and down to which those above are (design/matching.md)"""
 ROW_WIDTH, LEAST_SCATTER = 4.5, 1e-4
 """standard deviations of its scatter within which a point stands on a wall's curve, and the least such distance, of the
 wall's extent: exact walls are curved within a patch (design/matching_constants.md)"""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Walls:
+class Walls(NamedTuple):
     """Walls beside a blade."""
 
-    on_curve: NDArray[np.bool_]
-    """(n,) whether a point stands where a wall does in the meridional plane, as the sides' own ends do, too"""
-    on_fillet: NDArray[np.bool_]
-    """(n,) whether a point is as near to a wall as its fillet reaches at most"""
+    kinds: NDArray[np.str_]
+    """(n,) what a point may lie on: empty of the sides, `wall` where one stands in the meridional plane, as the sides'
+    own ends do, too, and `fillet` as near to it as its fillet reaches at most"""
     places: tuple[Reals, ...] = ()
     """(m, 2) of each wall, points in x and the radius, or in x and z of a cascade [m]"""
-
-    @property
-    def kinds(self) -> NDArray[np.str_]:
-        """(n,) what a point may lie on: `wall`, `fillet`, or nothing else than the blade's sides."""
-        return np.where(self.on_fillet, "fillet", np.where(self.on_curve, "wall", ""))
 
 
 class _Unrolled(NamedTuple):
@@ -104,18 +91,12 @@ class _Sheet:
     def off(self, plane: Reals) -> Reals:
         """Distances (n,) from the line through the sheet's points around each place (n, 2)."""
         patches = self.points[self.tree.query(plane, k=PATCH)[1]]
-        middle = np.mean(patches, axis=1)
-        along = np.linalg.svd(patches - middle[:, None], full_matrices=False)[2][:, 0]
-        return np.abs(cross2(plane - middle, along))
-
-    @property
-    def within(self) -> float:
-        """Distance from the curve up to which a point stands on it."""
-        return ROW_WIDTH * median_deviation(self.off(self.points)) + LEAST_SCATTER * self.extent
+        return np.abs(cross2(plane - np.mean(patches, axis=1), _extents(patches)[1][:, 0]))
 
     def holds(self, plane: Reals, reach: float) -> NDArray[np.bool_]:
         """Which of places (n, 2) stand on the curve, nearer than `reach` to the sheet."""
-        return np.asarray((self.tree.query(plane)[0] < reach) & (self.off(plane) <= self.within))
+        within = ROW_WIDTH * median_deviation(self.off(self.points)) + LEAST_SCATTER * self.extent
+        return np.asarray((self.tree.query(plane)[0] < reach) & (self.off(plane) <= within))
 
 
 def walls_of(points: Reals, arrangement: Arrangement | None) -> Walls:
@@ -124,9 +105,9 @@ def walls_of(points: Reals, arrangement: Arrangement | None) -> Walls:
     Where the arrangement is not known both are tried, and that in which more points are on walls is taken.
     """
     if points.shape[1] == 2:
-        return Walls(on_curve=np.zeros(len(points), dtype=bool), on_fillet=np.zeros(len(points), dtype=bool))
+        return Walls(np.full(len(points), ""))
     kinds: tuple[Arrangement, ...] = ("annular", "linear") if arrangement is None else (arrangement,)
-    return max((_walls(points, kind) for kind in kinds), key=lambda walls: np.count_nonzero(walls.on_curve))
+    return max((_walls(points, kind) for kind in kinds), key=lambda walls: np.count_nonzero(walls.kinds == "wall"))
 
 
 def _unrolled(points: Reals, arrangement: Arrangement) -> _Unrolled:
@@ -145,11 +126,12 @@ def _walls(points: Reals, arrangement: Arrangement) -> Walls:
     rows = random_subset(len(points), LOOKED_AT)
     some = _Unrolled(*(each[rows] for each in every))
     near = cKDTree(points[rows]).query(points[rows], k=PATCH)[1]
-    extents, tangents = _extents(some.plane[near])
-    in_space = _extents(points[rows][near])[0]
+    extents, axes = _extents(some.plane[near])
+    tangents, in_space = axes[:, 0], _extents(points[rows][near])[0]
     # areas, and no rows of points
     sheets = (extents[:, 1] < FLAT * extents[:, 0]) & (in_space[:, 1] > AREA * in_space[:, 0])
-    label = _connected(near, tangents, sheets)
+    together = np.abs(cross2(tangents[:, None], tangents[near])) < TURN
+    label = groups(sheets[:, None] & sheets[near] & together, near)
     for group in np.unique(label[sheets]):
         own = sheets & (label == group) & ~on_curve[rows]
         if np.count_nonzero(own) >= max(2 * PATCH, FEWEST_SHARE * len(rows)):
@@ -165,22 +147,13 @@ def _walls(points: Reals, arrangement: Arrangement) -> Walls:
                 on_curve |= sheet.holds(every.plane, 2.0 * width)
                 on_fillet |= sheet.tree.query(every.plane)[0] < _fillet_height(sheet, some, points[rows], others, width)
                 places.append(sheet.points)
-    return Walls(on_curve=on_curve, on_fillet=on_fillet & ~on_curve, places=tuple(places))
+    return Walls(np.where(on_curve, "wall", np.where(on_fillet, "fillet", "")), tuple(places))
 
 
 def _extents(patches: Reals) -> tuple[Reals, Reals]:
-    """Extents (n, d) of patches (n, k, d) along their own axes, largest first, and the first axis (n, d)."""
-    centred = patches - np.mean(patches, axis=1)[:, None]
-    _, sizes, axes = np.linalg.svd(centred, full_matrices=False)
-    return sizes / np.sqrt(patches.shape[1]), axes[:, 0]
-
-
-def _connected(near: NDArray[np.intp], tangents: Reals, sheets: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """Labels (n,) of the sheets that neighbouring patches (n, k) of about one direction form."""
-    start, end = np.repeat(np.arange(len(near)), near.shape[1]), near.ravel()
-    taken = sheets[start] & sheets[end] & (np.abs(cross2(tangents[start], tangents[end])) < TURN)
-    graph = coo_array((np.ones(np.count_nonzero(taken)), (start[taken], end[taken])), shape=(len(near),) * 2)
-    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.intp)
+    """Extents (n, d) of patches (n, k, d) along their own axes, largest first, and these axes (n, d, d)."""
+    _, sizes, axes = np.linalg.svd(patches - np.mean(patches, axis=1)[:, None], full_matrices=False)
+    return sizes / np.sqrt(patches.shape[1]), axes
 
 
 def _is_wall(sheet: _Sheet, some: _Unrolled, own: NDArray[np.bool_], others: NDArray[np.bool_], width: float) -> bool:
@@ -204,7 +177,7 @@ def _fillet_height(sheet: _Sheet, some: _Unrolled, points: Reals, others: NDArra
     rows = np.flatnonzero(others & across)
     rows = rows[np.argsort(away[rows], kind="stable")]
     patches = points[others][cKDTree(points[others]).query(points[rows], k=FILLET_PATCH)[1]]
-    normals = np.linalg.svd(patches - np.mean(patches, axis=1)[:, None], full_matrices=False)[2][:, 2]
+    normals = _extents(patches)[1][:, 2]
     upright = turned_left(sheet.tangents[nearest[rows]])
     in_space = upright[:, :1] * [1.0, 0.0, 0.0] + upright[:, 1:] * some.second[rows]
     facing = np.abs(np.sum(normals * in_space, axis=1))

@@ -20,44 +20,39 @@ from bladewright.fitting.matching.footpoints import (
     unit_or_zero,
 )
 from bladewright.fitting.models.model import ModelShape, stepped_rates
+from bladewright.numerics.elementary import turned_left
 from bladewright.numerics.robust import median_deviation
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.surface import Surface
 
 ROW_BAND = 0.015
-"""distance from an end, in v, within which a point may belong to its row (design/matching_constants.md)."""
+"""distance from an end, in v, within which a point may belong to its row (design/matching_constants.md)"""
 ROW_PARTS, ROW_SHARE = 20, 0.5
-"""parts of the chord in which the outermost points are looked for, and share of them that must have some at the end
-(`ROW_SHARE`): a cloud of a part of the span has none (design/matching.md)"""
+"""parts of the chord, and share of them that must show an end: a cloud of a part of the span does not
+(design/matching.md)"""
 FACE_BAND, FACE_DEPTH, FACE_NEARER_WALL = 0.1, 5.0, 0.3
-"""a point of an end face has its footpoint within this distance of the end, in v, lies `FACE_DEPTH` usual distances
-inside the sides, and is nearer to the wall, or to the row of outliers beside it, by the ratio `FACE_NEARER_WALL`
-(design/matching_constants.md)."""
+"""of a point of an end face: largest distance from the end, in v, least depth, in usual distances from the sides, and
+largest distance from the wall or a row of outliers, of that depth (design/matching_constants.md)"""
 FACE_OUTLIERS, FACE_OUTLIERS_NEARER_WALL = 20, 0.1
-"""outliers on an end face belong to it where there are so many, and half of them are nearer to one row than to the
-sides by the ratio `FACE_OUTLIERS_NEARER_WALL` (design/matching_constants.md)."""
+"""fewest outliers that may be an end face, and the largest median of that ratio (design/matching_constants.md)"""
 DEEPEST_FACE_POINT = 0.2
-"""depth of the deepest point of an end face, of the half thickness of the blade: shallower ones lie beside an edge that
-is not yet found (design/matching_constants.md)."""
+"""least depth of an end face's deepest point, of the blade's half thickness (design/matching_constants.md)"""
 PAST_END_BAND = 0.05
-"""distance from an end, in v, within which a point may come to lie past it (design/matching_constants.md)."""
+"""distance from an end, in v, within which a point may come to lie past it (design/matching_constants.md)"""
 MOST_WALL_POINTS = 400
-"""points of a wall beside the blade that count: as many as rows at an end have. With half four parameters of Aachen's
-stator are not determined, not one; twice changes nothing (design/matching_constants.md)."""
+"""points of a wall beside the blade that count: as many as a row at an end has (design/matching_constants.md)"""
 FEWEST_ROW_POINTS = 5
-"""points that a row at an end needs. Half and twice change nothing measured (design/matching_constants.md)."""
+"""points that a row at an end needs (design/matching_constants.md)"""
 ROW_WIDTH, ROW_LEAST_WIDTH = 4.5, 1e-6
-"""a point belongs to the row at an end within so many standard deviations of its middle, but within `ROW_LEAST_WIDTH`
-of the places' extent in any case: the sides themselves are no nearer to the walls (design/matching_constants.md)."""
+"""distance from the middle of a row within which a point belongs to it, in standard deviations, and the least of these,
+of the places' extent (design/matching_constants.md)"""
 ROW_DEGREE, ROW_TURNS, ROW_SETTLING_TURNS = 6, 30, 3
-"""highest degree of the polynomial by which a row may be off the wall; it is found in `ROW_TURNS` reweighted turns as a
-quantile, then in `ROW_SETTLING_TURNS` by least squares (design/matching_constants.md)."""
+"""highest degree of the law by which a row may be off the wall, and turns in which it is found as a quantile, then by
+least squares (design/matching_constants.md)"""
 OUTER_QUANTILE = 0.2
-"""share of the places at an end that lie outside the law that is first sought: a row is the outermost, and beside it
-lie points of the sides. Half and twice change nothing measured (design/matching_constants.md)."""
+"""share of the places outside the law that is first sought: a row is the outermost (design/matching_constants.md)"""
 ROW_SPREAD = 1e-3
-"""spread of the points at an end below which they stand in a row on the wall, of the chord
-(design/matching_constants.md)."""
+"""spread of the points at an end below which they stand in a row, of the chord (design/matching_constants.md)"""
 END_PARAMETERS = {"hub": 0.0, "shroud": 1.0}
 """v of the two ends, by the name of their wall."""
 
@@ -79,15 +74,14 @@ class WallPoints:
         """Nearest parameters (m,) on the wall's curve, continued, unit normals (m, 2) and signed distances (m,) [m]."""
         line = exact.wall(self.name)
         t = np.linspace(-0.05, 1.05, 400)
-        _, index = cKDTree(np.real(line.values(t))).query(self.places)
-        t = t[index]
+        t = t[cKDTree(np.real(line.values(t))).query(self.places)[1]]
         for _ in range(6):
             value, first, second = (np.real(line.values(t, order)) for order in range(3))
             miss = value - self.places
             rise = np.sum(first**2, axis=-1) + np.sum(miss * second, axis=-1)
             t = np.clip(t - np.sum(miss * first, axis=-1) / np.where(rise > 0.0, rise, np.inf), -0.1, 1.1)
         value, first = (np.real(line.values(t, order)) for order in range(2))
-        normal = np.stack([-first[:, 1], first[:, 0]], axis=-1) / np.sqrt(np.sum(first**2, axis=-1))[:, None]
+        normal = unit_or_zero(turned_left(first))
         return t, normal, np.asarray(np.sum(normal * (self.places - value), axis=-1))
 
     def motion_rates(self, exact: ExactBlade, points: Reals, rates: Reals) -> Reals:
@@ -102,8 +96,7 @@ class WallPoints:
         """Derivatives (m, k, 2) of the places on the curve at held parameters."""
 
         def places(design: Any) -> Reals:
-            found = shape.exact.moved_to(design).wall(self.name).values(t)
-            return np.reshape(found, (*found.shape[:-2], -1))
+            return np.reshape(shape.exact.moved_to(design).wall(self.name).values(t), (-1, 2 * len(t)))
 
         moving = ("channel.", "flow_path.", "tip_", "hub_")
         found = stepped_rates(shape, paths, moving, 2 * len(t), places)
@@ -126,11 +119,7 @@ class BladeEnds:
 
 
 def blade_ends_of(
-    points: Reals,
-    footpoints: Footpoints,
-    shape: ModelShape,
-    rows: NDArray[np.bool_],
-    beside: Sequence[Reals] = (),
+    points: Reals, footpoints: Footpoints, shape: ModelShape, rows: NDArray[np.bool_], beside: Sequence[Reals] = ()
 ) -> BladeEnds:
     """The ends as points (n, d) show them, of those in `rows` (n,), and places (m, 2) of walls `beside` the blade."""
     on_end_face = np.zeros(len(points), dtype=bool)
@@ -168,11 +157,8 @@ def blade_ends_of(
 
 
 def _outermost(footpoints: Footpoints, rows: NDArray[np.bool_], end: float) -> NDArray[np.bool_]:
-    """Which of n points, of those in `rows` (n,), may belong to the row at an end.
-
-    Where most parts of the chord show the end, they are those beside the outermost points of each part: a corner that
-    has slid past its points is far from its row.
-    """
+    """Which of n points, of those in `rows` (n,), may belong to the row at an end."""
+    # where most parts of the chord show the end, those beside the outermost of each: a corner may have slid past them
     away, part = np.abs(footpoints.v - end), part_of(footpoints.u, ROW_PARTS)
     least = np.full(ROW_PARTS, np.inf)
     np.minimum.at(least, part[rows], away[rows])
@@ -208,9 +194,8 @@ def _off_row(wall: WallPoints, exact: ExactBlade) -> Reals:
     for _ in range(ROW_TURNS):
         left = distances - terms @ np.linalg.lstsq(roots[:, None] * terms, roots * distances, rcond=None)[0]
         size = np.maximum(np.abs(left), 1e-3 * float(np.median(np.abs(left))))
-        roots = np.sqrt(
-            np.where(inward * left > 0.0, OUTER_QUANTILE, 1.0 - OUTER_QUANTILE) / np.where(size > 0.0, size, 1.0)
-        )
+        share = np.where(inward * left > 0.0, OUTER_QUANTILE, 1.0 - OUTER_QUANTILE)
+        roots = np.sqrt(share / np.where(size > 0.0, size, 1.0))
         roots /= np.max(roots)
     for _ in range(ROW_SETTLING_TURNS):
         row = np.abs(left) <= ROW_WIDTH * median_deviation(left)
@@ -229,18 +214,14 @@ def _half_thickness(shape: ModelShape, end: float) -> float:
 STATIONS: Reals = np.concatenate([[0.0], np.linspace(1.0 / 32.0, 31.0 / 32.0, 16), [1.0]])
 """places along the span, v, at which each edge is looked at; more add rows that say the same."""
 COVERED_SPAN = 0.05
-"""distance of the nearest point from an end of the span, in v, up to which the cloud shows that end: it may show a part
-of the span only. Half and twice change nothing measured (design/matching_constants.md)."""
+"""distance of the nearest point from an end, in v, up to which the cloud shows it (design/matching_constants.md)"""
 SPANWISE_WEIGHT = 0.2
-"""factor of distances along the edge while the nearest point is sought: a cloud may have few rows along the span. Half
-and twice change nothing measured (design/matching_constants.md)."""
+"""factor of distances along an edge in the search for its nearest point (design/matching_constants.md)"""
 NEIGHBOURS = 6
-"""points beside an edge whose distances from each other are looked at (design/matching_constants.md)."""
+"""points beside an edge whose distances from each other are looked at (design/matching_constants.md)"""
 ALLOWED_SPACINGS, ALLOWED_SPACINGS_EXACT = 1.5, {2: 15.0, 3: 5.2}
-"""allowed overhang in spacings of the points beside the edge, and in a cloud that is exact (`ALLOWED_SPACINGS_EXACT`),
-by dimension, where the true edge must cost nothing even by chance: of points at random in space one cloud in 1,000 has
-none within 3.4 spacings of one of 36 places on edges (a Poisson process), and rows are less even. A section may begin
-far out of its points (design/matching.md)."""
+"""allowed overhang in spacings of the points beside the edge, and in an exact cloud, by dimension, where a true edge
+must cost nothing even by chance (Poisson process, design/matching.md)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -280,15 +261,11 @@ def edge_overhang_of(
     exact: bool = False,
     cut_edges: Collection[str] = (),
 ) -> EdgeOverhang:
-    """The overhang of both edges over the points in `rows` (n,); loose limits for an `exact` cloud, none at cut edges.
-
-    By chance a point may be further from an edge than others from each other, and the true edge must cost nothing.
-    """
+    """The overhang of both edges over points in `rows` (n,); loose limits for an `exact` cloud, none at cut edges."""
     upper, cloud = sides[0], points[rows]
     stations: Reals = STATIONS if isinstance(upper, Surface) else np.zeros(1)
     u, v = np.repeat([0.0, 1.0], len(stations)), np.tile(stations, 2)
-    side = np.zeros(len(u), dtype=np.intp)
-    edges = footpoints_at(np.zeros((len(u), points.shape[1])), sides, side, u, v)
+    edges = footpoints_at(np.zeros((len(u), points.shape[1])), sides, np.zeros(len(u), dtype=np.intp), u, v)
     cut = [end for name, end in EDGE_PARAMETERS.items() if name.replace(" ", "_") in cut_edges]
     chosen, shown = [], ~np.isin(u, cut)
     for i, at in enumerate(edges.points):
@@ -310,11 +287,9 @@ def edge_overhang_of(
 
 
 def outward_at_edges(sides: Sequence[Side], u: Reals, v: Reals) -> Reals:
-    """Unit vectors (m, d) out of the blade at its edges, where u is 0 or 1.
-
-    Around a round edge the sides run opposite ways, and their normals point out; at a blunt or a sharp one the normals
-    are nearly opposite, and the sides run out.
-    """
+    """Unit vectors (m, d) out of the blade at its edges, where u is 0 or 1."""
+    # around a round edge the sides run opposite ways, and their normals point out; at a blunt or a sharp one the
+    # normals are nearly opposite, and the sides run out
     out = np.zeros((len(u), np.real(sides[0].control_points).shape[-1]))
     for number, side in enumerate(sides):
         at = footpoints_at(np.zeros_like(out), sides, np.full(len(u), number), u, v)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from bladewright.numerics.elementary import turned_left
 from bladewright.nurbs.basis import Reals, corners
 from bladewright.nurbs.closest import CONVERGED, Descents, Places
 from bladewright.nurbs.curve import Curve
@@ -15,19 +16,15 @@ from bladewright.nurbs.surface import Surface
 Side = Curve | Surface
 """one side of a section or of a blade"""
 EDGE_PARAMETERS, BETWEEN_EDGES = {"leading edge": 0.0, "trailing edge": 1.0}, 0.1
-"""u of the two edges, and distance from them, in u, from which points lie between them (`BETWEEN_EDGES`)"""
+"""u of the two edges, and distance from them, in u, from which points lie between them"""
 DEEP_SHARE, DEEP_EXTENT = 0.25, 1e-5
-"""a point inside the blade is looked for on both sides again, and without a hint by the global search, where it lies
-deeper than this share of the thickness there (`DEEP_SHARE`), and deeper than this share of the cloud's extent
-(`DEEP_EXTENT`), which keeps noise out: beside a thin edge a descent may end on its other side, and the point would
-be taken for an outlier (design/matching_constants.md)."""
+"""depth of a point inside the blade, of the thickness there and of the cloud's extent, from which both sides are looked
+at again: beside a thin edge a descent may end on the wrong one (design/matching_constants.md)"""
 STANDING_OUT = 6.0
-"""distance of a point deep inside, in usual ones of the cloud, from which the global search is taken: it may be called
-an outlier. Of a million noisy points 38,000 are deep, which took 47 s; of 4,000 of these none was nearer than by
-descents (design/matching.md)."""
+"""distance of such a point, in usual ones, from which it may be called an outlier and is looked for globally
+(design/matching.md)"""
 FACING = 0.999
-"""cosine of the angle from which a normal faces a point: smooth sides do to rounding, and corners that turn by less
-than 3 deg leave a point a thousandth of its distance too near (design/matching_constants.md)."""
+"""cosine of the angle from which a normal faces a point, as smooth sides' do (design/matching_constants.md)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -79,9 +76,8 @@ def nearest_footpoints(
 ) -> Footpoints:
     """The nearest places of points (n, d) on the upper and the lower side, by descents (see `nurbs.closest`).
 
-    With a `hint`, footpoints on sides that have moved little since, they start there; without one, those of
-    points deep inside that stand out are found by the global search. `converged` is the last step in the parameters of
-    a patch.
+    They start at a `hint`, footpoints on sides that have moved little since; without one, points deep inside that stand
+    out are looked for globally. `converged` is the last step in the parameters of a patch.
     """
     search = Descents(tuple(sides))
     start = None if hint is None else Places(shape=hint.side, u=hint.u, v=hint.v)
@@ -107,10 +103,7 @@ def nearest_footpoints(
 
 
 def _facing_corners(footpoints: Footpoints, sides: Sequence[Side]) -> Footpoints:
-    """The footpoints with those at corners, of blunt and sharp edges, facing their points, which lie outside.
-
-    The normal of either side there is across the way to the point, so that a point ahead of an edge would cost nothing.
-    """
+    """The footpoints, at corners with normals to their points: by those of the sides points ahead cost nothing."""
     corner = np.zeros(len(footpoints.u), dtype=bool)
     for number, side in enumerate(sides):
         knots, degree = (side.knots, side.degree) if isinstance(side, Curve) else (side.knots_u, side.degree_u)
@@ -143,7 +136,7 @@ def footpoints_at(points: Reals, sides: Sequence[Side], side: NDArray[np.intp], 
         if isinstance(shape, Curve):
             at[rows] = shape(u[rows])
             along = np.asarray(shape.derivative(u[rows]))
-            normals[rows] = sign * unit_or_zero(np.stack([-along[:, 1], along[:, 0]], axis=-1))
+            normals[rows] = sign * unit_or_zero(turned_left(along))
             continue
         at[rows] = shape(u[rows], v[rows])
         along, across = (np.asarray(shape.derivative(u[rows], v[rows], *order)) for order in ((1, 0), (0, 1)))

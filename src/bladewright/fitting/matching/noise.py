@@ -9,70 +9,54 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 from scipy.special import bdtrc, ndtri
 
-from bladewright.fitting.clouds.thinning import even_subset, random_subset
+from bladewright.fitting.clouds.thinning import MOST_POINTS, even_subset, groups, random_subset
 from bladewright.fitting.matching.footpoints import BETWEEN_EDGES, EDGE_PARAMETERS, Footpoints
 from bladewright.numerics.robust import DEVIATION_OVER_MEDIAN, median_deviation
 from bladewright.nurbs.basis import Reals
 
 NEIGHBOURS = {2: 4, 3: 8}
-"""neighbours that a point is compared with, by dimension: two to each side of a curve, a ring on a surface
-(design/matching_constants.md)."""
+"""neighbours that a point is compared with, by dimension: a ring on a surface (design/matching_constants.md)"""
 OUTLYING_NOISE = 6.0
-"""distance of an outlier, in standard deviations of the noise: two of a billion normal points are so far off
-(design/matching_constants.md)."""
+"""distance of an outlier, in standard deviations of the noise (design/matching_constants.md)"""
 NEIGHBOUR_STEP = 5.0
-"""largest difference of neighbours on one surface, in standard deviations of the noise: half and twice change nothing
-measured (design/matching_constants.md)."""
+"""largest difference of neighbours, in standard deviations of the noise (design/matching_constants.md)"""
 OUTLYING_MISFIT, OUTLYING_MISFIT_AT_EDGES = 6.0, 60.0
-"""distance of an outlier, in usual misfits of the design, and near an edge (`OUTLYING_MISFIT_AT_EDGES`), where misfits
-are large and neighbours are few. Lower values take points of an edge that is not yet found for outliers
-(design/matching_constants.md)."""
+"""distance of an outlier, in usual misfits of the design, and near an edge (design/matching_constants.md)"""
 MATCHED = 1.0 / 3.0
-"""misfit, of the noise, below which distances are noise: it adds 5 % to their standard deviation."""
+"""misfit, of the noise, below which distances are noise: it adds 5 % to their standard deviation"""
 EDGE_BAND = 0.03
-"""distance from an edge, in u, within which a point counts as near it (design/matching_constants.md)."""
+"""distance from an edge, in u, within which a point counts as near it (design/matching_constants.md)"""
 SIDES_APART = 0.05
-"""distance that the two sides of a thin blade are taken to have, of the extent, so that points of one are not
-neighbours of the other (design/matching_constants.md)."""
+"""distance that the sides of a thin blade are taken to have at least, of the extent (design/matching_constants.md)"""
 CHANCE_EXCESS = 3.0
-"""excess of the usual distance over the noise by chance, in multiples of the noise over the root of the number of
-points (design/matching_constants.md)."""
+"""excess of the usual distance by chance, of the noise over the root of their number (design/matching_constants.md)"""
 LARGEST_GROUP, SMALL_GROUP = 0.05, 20
-"""largest group of outliers, as a share of the points, but `SMALL_GROUP` points are always allowed: half and twice
-change nothing measured (design/matching_constants.md)."""
+"""largest group of outliers, of all points, and points it may have in any case (design/matching_constants.md)"""
 END_BAND, WRONG_END_SHARE = 0.02, 0.2
-"""distance from an end of the blade, in v, within which points show it; where more than `WRONG_END_SHARE` of them lie
-past the end, the end is wrong and not the points (design/matching_constants.md)."""
+"""distance from an end, in v, within which points show it, and share of them past it from which it is the end that is
+wrong (design/matching_constants.md)"""
 PAST_END_BY_CHANCE, LEVEL_SLOPE = 1, 0.05
 """points level with the sides that may lie past an end by chance, and height per length past it up to which a point is
-level (`LEVEL_SLOPE`): more show that the end is wrong (design/matching.md)."""
+level (design/matching.md)"""
 LARGEST_OUTLIER_SHARE = 0.15
-"""share of outliers from which it is the design that lies off, and all points count as inliers: half and twice change
-nothing measured (design/matching_constants.md)."""
+"""share of outliers from which it is the design that lies off, and there are none (design/matching_constants.md)"""
 LOCAL_POINTS, LOCAL_OVERLAP = 128, 16
-"""points around a site whose noise and misfit are taken to be alike: a quartile of so many is known to 15 %, and few
-enough follow a scanner whose noise varies; and how many sites a point is around, about (`LOCAL_OVERLAP`)
-(design/matching_constants.md)."""
+"""points around a site whose noise and misfit are alike, and sites around a point (design/matching_constants.md)"""
 DEVIATION_OVER_QUARTILE = 1.0 / float(ndtri(5.0 / 8.0))
-"""standard deviation of normal noise over the lower quartile of its magnitude: the points of an end face beside a side,
-half of all there, spoil it less than the median."""
+"""standard deviation of normal noise over the lower quartile of its magnitude, which end faces spoil less than the
+median (design/matching_constants.md)"""
 CORE_NEIGHBOURS = 3
-"""points of the large groups beside a small one to which a step within the noise may lead: half and twice change
-nothing measured (design/matching_constants.md)."""
+"""points of large groups to which a step from a small one may lead (design/matching_constants.md)"""
 EXACT = 1e-4
-"""distance to which exact points are to be met, of the extent of the cloud or of the chord. No point nearer than that
-is an outlier, as those at an edge lie further off than the noise that all others show; half and twice change nothing
-measured (design/matching_constants.md)."""
+"""distance to which exact points are to be met, of the extent of the cloud or of the chord: no point nearer is an
+outlier (design/matching_constants.md)"""
 CROWD = 2
-"""neighbours that are outliers beside one of a part that is not found: of 1 % that scatter, 3 in 1,000 have so many."""
+"""neighbours that are outliers beside one of a part that is not found: of 1 % that scatter, 3 in 1,000 have so many"""
 SIGNIFICANCE = 1e-3
-"""probability of what is called no chance: the level of tests whose null hypothesis is a good match. (Neyman and
-Pearson 1933)."""
+"""probability of what is called no chance: the level of tests of good matches (Neyman and Pearson 1933)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -147,10 +131,7 @@ def _outliers_of(footpoints: Footpoints, weights: Reals, around: Neighbourhood) 
 
 
 def _short_of_ends(past: NDArray[np.bool_], level: NDArray[np.bool_], footpoints: Footpoints) -> NDArray[np.bool_]:
-    """Whether points (n,) are at an end of the blade that so many are past that it is the end which is wrong.
-
-    It is wrong too where most of the points past it are `level` with the sides that go on there.
-    """
+    """Whether points (n,) are at an end that is wrong: many are past it, or most of these `level` with the sides."""
     wrong = np.zeros(len(past), dtype=bool)
     for at_end in (footpoints.v < END_BAND, footpoints.v > 1.0 - END_BAND):
         past_end, onwards = int(np.count_nonzero(past & at_end)), int(np.count_nonzero(past & level & at_end))
@@ -183,19 +164,11 @@ def _cut_off(
     return ~np.isin(label, label[np.concatenate([core, separate[reached]])])
 
 
-def groups(linked: NDArray[np.bool_], index: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Labels (n,) of the groups that points form with those neighbours (n, k) to which they are linked (n, k)."""
-    start, way = np.nonzero(linked)
-    graph = csr_array((np.ones(len(start), dtype=np.int8), (start, index[start, way])), shape=(len(index),) * 2)
-    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.intp)
-
-
 def crowded_at_edges(outliers: NDArray[np.bool_], footpoints: Footpoints) -> dict[str, NDArray[np.bool_]]:
     """Which of n points are outliers at an edge, by its name, where more are than chance puts there.
 
-    Outliers lie anywhere, to either side of a true surface; those of an edge that is not found lie at it (binomial
-    test: Conover 1999, section 3.1). Inside, as many are at an edge as points are; outside, an edge is nearest to what
-    came from as far around it as it is off (as many at most: Hoeffding 1956).
+    By chance inside as many are at an edge as points are; outside an edge is nearest to what came from as far around it
+    as it is off (as many at most: Hoeffding 1956). Reference: Conover 1999, section 3.1 (binomial test).
     """
     found, off, inside = {}, int(np.count_nonzero(outliers)), outliers & (footpoints.heights < 0.0)
     for name, end in EDGE_PARAMETERS.items():
@@ -215,19 +188,11 @@ def crowded_at_edges(outliers: NDArray[np.bool_], footpoints: Footpoints) -> dic
 def doubted_outliers(
     outliers: NDArray[np.bool_], points: Reals, footpoints: Footpoints, *, systematic: bool
 ) -> NDArray[np.bool_]:
-    """Which of n points (n, d) are outliers that may be points of the blade.
-
-    They crowd at an edge, or where the misfit is `systematic` have others beside them, which scattered ones hardly do.
-    """
+    """Which outliers of points (n, d) may be the blade's: they crowd at edges, or in a `systematic` misfit anywhere."""
     doubted = np.any([np.zeros_like(outliers), *crowded_at_edges(outliers, footpoints).values()], axis=0)
     if systematic:
         doubted |= outliers & (np.sum(outliers[neighbourhood_of(points, footpoints).index], axis=1) >= CROWD)
     return doubted
-
-
-COMPARED_POINTS = 20_000
-"""points that are compared with their neighbours; it bounds the time, and their noise is known to half a percent. Half
-and twice change nothing measured (design/matching_constants.md)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -242,10 +207,7 @@ class NoiseEstimate:
     """share of the inliers' variance that neighbours have in common: 0 for pure noise, 1 for a misfit of the design"""
 
     def independent_share(self, parameters: int) -> float:
-        """Share of the points that count as independent, for a design with so many parameters.
-
-        A misfit is shared by as many neighbours as there are points for two parameters.
-        """
+        """Share of the points that count as independent: those for two parameters of a design share a misfit."""
         points = float(np.count_nonzero(self.inliers)) / (2.0 * parameters)
         return 1.0 / (1.0 + self.correlation * max(points - 1.0, 0.0))
 
@@ -258,16 +220,15 @@ def noise_of(
     Weights (n,) are inverse variances relative to each other. A point of weight 0 tells nothing of the noise, and is an
     outlier where it lies further off than every inlier.
     """
+    trusted = np.zeros(len(points), dtype=bool) if trusted is None else trusted
     rows = np.arange(len(points)) if weights is None else np.flatnonzero(weights > 0.0)
     if len(rows) == len(points):
-        rows = random_subset(len(points), COMPARED_POINTS)
+        rows = random_subset(len(points), MOST_POINTS)
     if len(rows) < len(points):
         return _noise_of_some(points, footpoints, weights, rows, trusted)
     weights = np.ones(len(points)) if weights is None else weights / np.mean(weights)
     heights, around = footpoints.heights, neighbourhood_of(points, footpoints)
-    inliers = ~_outliers_of(footpoints, weights, around)
-    inliers = inliers if trusted is None else inliers | trusted
-    index = around.index
+    inliers, index = ~_outliers_of(footpoints, weights, around) | trusted, around.index
     kept = inliers & inliers[index].all(axis=1)
     kept = kept if np.any(kept) else np.ones(len(points), dtype=bool)
     others, height, own_weight = weights[index[kept]], heights[kept], weights[kept]
@@ -286,15 +247,15 @@ def noise_of(
 
 
 FLAT = 1e-3
-"""extent of neighbours across their row, of that along it, below which only the slope along it is told: half and twice
-change the noise of four clouds by 0.1 % (design/matching.md)"""
+"""extent of neighbours across their row, of that along it, below which only the slope along it is told
+(design/matching.md)"""
 
 
 def _linear_shares(places: Reals, beside: Reals, normals: Reals) -> Reals:
-    """Shares (n, k) of the heights of points (n, k, 4) in what a plane through them has at places (n, 4) [m].
+    """Shares (n, k) of the heights of points (n, k, 4) in that of a plane through them at places (n, 4) [m].
 
-    The normals (n, 3) are those of the surface. The difference from a plane leaves the slope of a misfit out, which
-    neighbours to one side do not cancel (Gasser, Sroka and Jennen-Steinmetz 1986, pseudo-residuals).
+    It leaves out the slope of a misfit, which neighbours to one side do not cancel. Reference: Gasser, Sroka and
+    Jennen-Steinmetz 1986 (pseudo-residuals).
     """
     offsets = (beside - places[:, None])[..., : normals.shape[1]]
     offsets = offsets - np.sum(offsets * normals[:, None], axis=-1, keepdims=True) * normals[:, None]
@@ -305,19 +266,11 @@ def _linear_shares(places: Reals, beside: Reals, normals: Reals) -> Reals:
 
 
 def _noise_of_some(
-    points: Reals,
-    footpoints: Footpoints,
-    weights: Reals | None,
-    rows: NDArray[np.intp],
-    trusted: NDArray[np.bool_] | None,
+    points: Reals, footpoints: Footpoints, weights: Reals | None, rows: NDArray[np.intp], trusted: NDArray[np.bool_]
 ) -> NoiseEstimate:
-    """The noise estimate of the points in `rows`, and which of the others are inliers by it.
-
-    Those are level with an inlier beside them, or where they have no weight no further off than every inlier.
-    """
+    """The noise estimate of the points in `rows`, and which of the others are inliers by it."""
     part = footpoints.part(rows)
-    known = None if trusted is None else trusted[rows]
-    found = noise_of(points[rows], part, None if weights is None else weights[rows], trusted=known)
+    found = noise_of(points[rows], part, None if weights is None else weights[rows], trusted=trusted[rows])
     kept = part.part(found.inliers)
     if weights is not None and not np.all(weights > 0.0):
         inliers = footpoints.distances <= np.max(kept.distances)
@@ -327,4 +280,4 @@ def _noise_of_some(
         near = EXACT * float(np.max(np.ptp(points, axis=0)))
         inliers = footpoints.distances - kept.distances[beside] <= OUTLYING_NOISE * level + near
     inliers[rows] = found.inliers
-    return replace(found, inliers=inliers if trusted is None else inliers | trusted)
+    return replace(found, inliers=inliers | trusted)

@@ -1,14 +1,13 @@
 """The least-squares problem of a match: residuals in chords, and what is held where a cloud says nothing.
 
-The regularisation holds smooth laws, equal sides, nothing far from the start. Its rows are linear in the scaled
-parameters and have variance one. A search weighs them with the noise of the cloud, so that they vanish beside data that
-are exact.
+The regularisation holds smooth laws, equal sides, nothing far from the start, by rows of variance one that are linear
+in the scaled parameters. A search weighs them with the noise of the cloud, so that they vanish beside exact data.
 """
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import InitVar, dataclass, field
 from itertools import chain, groupby
 
 import numpy as np
@@ -28,29 +27,28 @@ from bladewright.section.unified import UnifiedSection
 from bladewright.section.unified_limits import TANGENTS, THICKNESSES
 
 SPREAD_ABOUT_START = 3.0
-"""spread of a parameter about its start, in its own scale. It only holds what nothing else does
-(design/matching_constants.md)."""
+"""spread of a parameter about its start, in its own scale: it holds what nothing else does
+(design/matching_constants.md)"""
 CHANNEL_SPREAD = 1.0
-"""the same of control points of the meridional curves, which the cloud lets slide along their curves
-(design/matching_constants.md)."""
+"""the same of points of meridional curves, which the cloud lets slide along these (design/matching_constants.md)"""
 CORNER_SPREAD = 0.25
-"""the same of the channel's corners: where no row of points shows an end of the blade, the outline does, within half a
-percent of the chord (design/matching_constants.md)."""
+"""the same of corners of a channel whose ends the outline alone shows (design/matching_constants.md)"""
 MERIDIANS = ("channel.", "flow_path.", "leading_edge.", "trailing_edge.")
 """beginnings of the paths of those, and of the edge curves and walls of blades from sections."""
 POINT_PATH = re.compile(r"(.*)\[\d+\](\.[xr])")
 """path of a coordinate of a point of such a curve"""
 BEND_SPREAD = 0.5
-"""spread of the second differences of a law, in the scale of its parameters. Smaller values straighten laws that the
-cloud bends (design/matching_constants.md)."""
+"""spread of the second differences of a law, in the scale of its parameters (design/matching_constants.md)"""
 CAMBER_SPREAD = 0.3
-"""spread of the difference of upper and lower thickness, in their scale: a camber line in the middle is preferred
-(design/matching_constants.md)."""
-
+"""spread of the difference of upper and lower thickness, in their scale (design/matching_constants.md)"""
 USUAL_TANGENT, TANGENT_SPREAD = 0.4, 1.5
-"""usual tangent proportion of the camber lines of a unified blade, and the spread about it, in the scale of tangents.
-Nearly straight cambers hardly show them, and they went to their bounds, where metal angles cease to matter
-(design/matching.md)."""
+"""usual tangent proportion of a unified blade's camber lines, and the spread about it, in the scale of tangents: nearly
+straight cambers hardly show them (design/matching.md)"""
+EDGE_SHARE = 0.05
+"""share of a cloud's points that show its edges: rows of edges count as much (design/matching_constants.md)"""
+USUAL_EDGE_HEIGHT = (0.8, 0.2)
+"""usual height of the control point that sets an edge's radius, of the thickness beside it, and its spread
+(design/matching_constants.md)"""
 
 Row = tuple[list[tuple[str, float]], float, float]
 """paths of parameters and their factors, the usual value of their sum, and its spread in the scale of the parameters"""
@@ -91,8 +89,8 @@ def regularisation_of(
     values = start.parameters()
     index = {path: i for i, path in enumerate(paths)}
     tangents = _tangents(start, TANGENT_SPREAD * float(np.sqrt(independent_share)))
-    bends = chain(_second_differences(start), _meridional_bends(start))
-    for terms, usual, width in chain(bends, _thickness_differences(start), tangents):
+    own = _second_differences(start), _meridional_bends(start), _thickness_differences(start), tangents
+    for terms, usual, width in chain.from_iterable(own):
         free = {index[path]: factor for path, factor in terms if path in index}
         if not free:
             continue
@@ -122,10 +120,7 @@ def _second_differences_of(line: Sequence[str]) -> Iterator[Row]:
 
 
 def _meridional_bends(start: Design) -> Iterator[Row]:
-    """Second differences of what the points of edges, walls and a channel's curves change by: these bend themselves.
-
-    Of an edge the points past hub and shroud are hardly shown by the cloud, and went off with every search.
-    """
+    """Second differences of what points of curves change by: the cloud hardly shows those past hub and shroud."""
     values, lines = start.parameters(), dict[str, list[str]]()
     for path in values:
         found = POINT_PATH.fullmatch(path)
@@ -148,14 +143,6 @@ def _tangents(start: Design, spread: float) -> Iterator[Row]:
         for path in start.parameters():
             if path.startswith(TANGENTS):
                 yield [(path, 1.0)], USUAL_TANGENT, spread
-
-
-EDGE_SHARE = 0.05
-"""share of a cloud's points that show its edges: the rows that hold overhanging edges count as much as so many
-points (design/matching_constants.md)."""
-USUAL_EDGE_HEIGHT = (0.8, 0.2)
-"""usual height of the control point that sets an edge's radius, of the thickness beside it, and its spread. It is weak,
-and holds edge radii that no point shows (design/matching_constants.md)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -220,10 +207,7 @@ class CloudResiduals:
         return np.concatenate(blocks) / self.model.chord
 
     def places(self, state: PlacedCloud) -> tuple[Footpoints, Reals]:
-        """The footpoints whose motion changes residuals, and the directions (n, d) that count.
-
-        First those of the points, then those of points past an end, and last those of the edges' overhang.
-        """
+        """The footpoints of points, of those past an end, and of edges, and the directions (n, d) that count."""
         footpoints, near = state.footpoints, self.ends.near
         edges = self.overhang.edges(state.shape.sides)
         directions = [-self.roots[:, None] * footpoints.normals, -(self.roots[:, None] * footpoints.beyond)[near]]
@@ -241,31 +225,28 @@ class CloudResiduals:
         return float(np.sqrt(max(1.0, EDGE_SHARE * len(self.points) / max(1, len(self.overhang.u)))))
 
 
+@dataclass(kw_only=True, eq=False)
 class MatchProblem(ConstrainedProblem):
-    """Residuals of a cloud, of unusual edge heights and of the regularisation, under the shape's constraints."""
+    """Residuals of a cloud, of unusual edge heights and of the regularisation, under the shape's constraints.
 
-    def __init__(
-        self,
-        *,
-        cloud_residuals: CloudResiduals,
-        start: Design,
-        paths: Sequence[str],
-        scales: Scales,
-        regularisation: Regularisation,
-        independent_share: float,
-        begun: PlacedCloud,
-        margin: float,
-    ) -> None:
-        self.cloud_residuals, self.model = cloud_residuals, cloud_residuals.model
-        self.start, self.paths, self.scales, self.margin = start, tuple(paths), scales, margin
-        noise = cloud_residuals.noise
-        self.edge_height_noise = noise / float(np.sqrt(independent_share))
-        """noise by which edge heights are weighed: larger where points repeat each other"""
-        self.regularisation = regularisation.scaled(noise)
-        self.first = self.values_of(start)
-        self.evaluations, self._least = 0, np.inf
-        self.best = np.zeros(len(self.paths))
-        """the variables of least cost so far"""
+    `best` are the variables of least cost so far.
+    """
+
+    cloud_residuals: CloudResiduals
+    start: Design
+    paths: tuple[str, ...]
+    scales: Scales
+    regularisation: Regularisation
+    edge_height_noise: float
+    """noise by which edge heights are weighed: larger where points repeat each other"""
+    margin: float
+    """that keeps edge radii from what is refused"""
+    begun: InitVar[PlacedCloud]
+    evaluations: int = 0
+
+    def __post_init__(self, begun: PlacedCloud) -> None:
+        self.model, self.first = self.cloud_residuals.model, self.values_of(self.start)
+        self.best, self._least = np.zeros(len(self.paths)), np.inf
         self._hint = begun.footpoints
         self._last: tuple[bytes, PlacedCloud | None] = (self.vector(begun.shape.design).tobytes(), begun)
 
@@ -316,10 +297,7 @@ class MatchProblem(ConstrainedProblem):
         return rows, margins
 
     def derivatives(self, z: Reals) -> tuple[Reals, Reals] | None:
-        """Derivatives (m, k) of all residuals and (c, k) of the constrained values.
-
-        None where the shape's stream lines turn back between the places at which it is looked at.
-        """
+        """Derivatives (m, k) of residuals and (c, k) of constrained values; None where stream lines turn back."""
         state = self.state(z)
         if state is None:
             return None

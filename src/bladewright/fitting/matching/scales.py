@@ -16,10 +16,9 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 
 SMALLEST_LENGTH = 2e-5
-"""smallest thickness and edge radius, of the chord: about what can be made, and far above rounding
-(design/matching_constants.md)."""
+"""smallest thickness and edge radius, of the chord: about what can be made (design/matching_constants.md)"""
 LARGEST_ANGLE = 89.0
-"""largest angle [deg]: at 90 deg the tangent that places the camber is infinite (design/matching_constants.md)."""
+"""largest angle [deg]: at 90 deg the tangent that places the camber is infinite (design/matching_constants.md)"""
 
 
 class ParameterRange(NamedTuple):
@@ -28,43 +27,26 @@ class ParameterRange(NamedTuple):
     size: float
     """a change that matters"""
     low: float = -np.inf
-    """lowest value"""
     high: float = np.inf
-    """highest value"""
 
 
 WEDGE_RANGE, ANGLE_RANGE = ParameterRange(3.0, 0.0, LARGEST_ANGLE), ParameterRange(5.0, -LARGEST_ANGLE, LARGEST_ANGLE)
-"""of a wedge angle [deg]"""
-"""of any other angle [deg]"""
+"""of a wedge angle and of any other angle [deg]"""
 SIZE_BY_NAME = {
-    "maximum_thickness_at": 0.1,
-    "camber_position": 0.1,
-    "uniform_load": 0.1,
-    "transition": 0.1,
-    "leading_edge_curvature": 0.02,
-    "trailing_edge_curvature": 0.02,
-    "trailing_edge_slope": 0.1,
-    "trailing_edge_slope_factor": 0.3,
-    "camber": 0.02,
-    "lift_coefficient": 0.3,
-    "design_lift": 0.3,
-    "front_camber": 0.1,
-    "abscissas": 0.01,
-    "ordinates": 0.01,
-    "thickness_multiplier": 0.1,
-    "suction_heights": 0.02,
-    "pressure_heights": 0.02,
-    "suction_places": 0.05,
-    "pressure_places": 0.05,
+    **dict.fromkeys(("abscissas", "ordinates"), 0.01),
+    **dict.fromkeys(("camber", "leading_edge_curvature", "trailing_edge_curvature"), 0.02),
+    **dict.fromkeys(("suction_heights", "pressure_heights"), 0.02),
+    **dict.fromkeys(("suction_places", "pressure_places"), 0.05),
+    **dict.fromkeys(("camber_position", "front_camber", "uniform_load", "transition"), 0.1),
+    **dict.fromkeys(("maximum_thickness_at", "thickness_multiplier", "trailing_edge_slope"), 0.1),
+    **dict.fromkeys(("lift_coefficient", "design_lift", "trailing_edge_slope_factor"), 0.3),
 }
 """of fields whose size the values do not tell, a change that matters"""
 ON_BOUND = 1e-9
-"""distance from a bound, of a parameter's scale, within which it is held by it: half and twice change no match of a
-moved section (design/matching_constants.md)"""
+"""distance from a bound, of a parameter's scale, within which it is held by it (design/matching_constants.md)"""
 INSIDE = 1e-3
-"""how far inside its field's limits a parameter stays, of its size: a search may differentiate at its bounds. Half and
-twice change nothing measured (design/matching_constants.md)."""
-
+"""how far inside its field's limits a parameter stays, of its size, as derivatives are taken at bounds
+(design/matching_constants.md)"""
 
 RangeRule = Callable[[float, float], ParameterRange]
 """from a parameter's value and the largest magnitude in its field"""
@@ -106,9 +88,7 @@ class Scales:
     size: Reals
     """(k,) a change that matters: the unit of a search, and how far a first guess may be off"""
     low: Reals
-    """(k,) lowest values"""
     high: Reals
-    """(k,) highest values"""
 
     def inside(self, values: Reals) -> NDArray[np.bool_]:
         """Which of the parameters (k,) lie on none of their bounds, apart from rounding."""
@@ -160,17 +140,16 @@ def _range(design: Design, path: str, value: float, largest: float, chord: float
     if path.startswith("section."):
         return part_range(design, path, value, largest)
     length = chord / UNITS[getattr(design, "length_unit")]  # noqa: B009 - a field of every family, not of the base
+    radius = ParameterRange(max(0.5 * largest, 1e-3), SMALLEST_LENGTH, 0.999)
     kinds = {
-        "stagger": ParameterRange(5.0, -LARGEST_ANGLE, LARGEST_ANGLE),
+        "stagger": ANGLE_RANGE,
         "metal_angle": ParameterRange(10.0, -LARGEST_ANGLE, LARGEST_ANGLE),
         "tangent": ParameterRange(0.2, 0.05, 1.0),
-        "leading_edge_radius": ParameterRange(max(0.5 * largest, 1e-3), SMALLEST_LENGTH, 0.999),
-        "trailing_edge_radius": ParameterRange(max(0.5 * largest, 1e-3), SMALLEST_LENGTH, 0.999),
+        **dict.fromkeys(("leading_edge_radius", "trailing_edge_radius"), radius),
         "thickness": ParameterRange(max(0.5 * largest, 0.02), SMALLEST_LENGTH, 5.0),
         "weights": ParameterRange(0.5 * value, 1e-2 * value, 1e2 * value),
-        "leading_edge_theta": ParameterRange(float(np.degrees(0.05))),
+        **dict.fromkeys(("leading_edge_theta", "stacking.theta"), ParameterRange(float(np.degrees(0.05)))),
         "axial_chord": ParameterRange(0.05 * length, 1e-3 * length),
         **dict.fromkeys(("channel", "flow_path.", "leading_edge.", "trailing_edge."), ParameterRange(0.02 * length)),
-        "stacking.theta": ParameterRange(float(np.degrees(0.05))),
     }
     return next((kind for name, kind in kinds.items() if path.startswith(name)), ParameterRange(0.05 * length))

@@ -7,15 +7,15 @@ search in exact data ends free of it. Knots, outliers and what lies at the ends 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import chain
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bladewright.designs import Design
-from bladewright.errors import DesignError, FitError
+from bladewright.errors import BladewrightError, DesignError, FitError
 from bladewright.fitting.clouds.thinning import random_subset
-from bladewright.fitting.matching.best_so_far import BestSoFar
 from bladewright.fitting.matching.blade_ends import BladeEnds, blade_ends_of, edge_overhang_of
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.noise import EXACT, NoiseEstimate, doubted_outliers, noise_of
@@ -26,34 +26,36 @@ from bladewright.numerics.least_squares import FIRST_DAMPING, MIN_REDUCTION, con
 from bladewright.nurbs.basis import Reals
 
 EVALUATIONS_PER_ROUND = 10
-"""evaluations of the surface in a round; after it knots, outliers and noise are updated
-(design/matching_constants.md)."""
+"""evaluations in a round, after which knots, outliers and noise are updated (design/matching_constants.md)"""
 MOST_ROUNDS = 12
-"""rounds of a search at most: it bounds the time of a search that does not settle (design/matching_constants.md)."""
+"""rounds of a search at most: it bounds the time (design/matching_constants.md)"""
 SETTLED_RATIO = 0.995
-"""ratio of a round's misfit to the one before from which a search has settled: half and twice its distance to one
-change nothing measured (design/matching_constants.md)."""
+"""ratio of a round's misfit to the one before from which a search has settled (design/matching_constants.md)"""
 ROUGH_REDUCTION = 0.01
-"""predicted relative reduction of the cost that a step needs while a search is only one on the way: exact minima of
-intermediate structures are not needed (design/matching_constants.md)."""
+"""predicted relative reduction of the cost that a step on the way needs (design/matching_constants.md)"""
 REGULARISATION_DECAY = 0.5
 """ratio of the noise that a fading regularisation is for to that of the round before, at most (iteratively regularised
-Gauss-Newton: Bakushinskii 1992). Held at the misfit, which it causes itself, it kept rich matches 7e-3 of chord off
-(design/matching.md)."""
+Gauss-Newton: Bakushinskii 1992; design/matching.md)"""
 QUICK_ROUNDS = 2
 """rounds of a search on the way (design/matching_constants.md); of one on whose misfit a decision rests one more"""
 FAST_RATIO = 0.5
-"""ratio of misfits below which the next round is predicted to reduce the misfit as much again
-(design/matching_constants.md)."""
+"""ratio of misfits below which the next round is predicted to have the same (design/matching_constants.md)"""
 EXACT_MISFIT = 3e-14
-"""misfit below which nothing is left to find, of the chord: rounding of the surfaces themselves. Half and twice change
-nothing measured (design/matching_constants.md)."""
+"""misfit below which nothing is left to find, of the chord: rounding (design/matching_constants.md)"""
 NATIVE_TOLERANCE_OF_NOISE = 0.1
-"""tolerance of the native surfaces in a round, of the noise: a tenth adds less than 1 % to the distances. Knots coarser
-than the misfit needs had lost matches that were found (design/matching_constants.md)."""
+"""tolerance of the native surfaces in a round, of the noise (design/matching_constants.md)"""
 EDGE_RADIUS_MARGIN = {2: 2e-6, 3: 2e-5}
 """margin by which the control point that sets an edge's radius is held below the thickness beside it, of the section's
-extent, by dimension: a blade is refused between its stations too."""
+extent, by dimension: a blade is refused between its stations too (design/matching_constants.md)"""
+KEPT_DESIGNS = 3
+"""designs of as many parameters that are kept, as the nearest may not be built (design/matching_constants.md)"""
+NOISE_CORRELATION = 0.15
+"""share of the misfit that neighbours have in common below which it is noise (design/matching_constants.md)"""
+FAR_OFF = 3.0
+"""rms misfit, in standard deviations by the median, beyond which it is no noise (design/matching_constants.md)"""
+EXACT_NOISE = 1e-5
+"""noise, of the chord, below which a cloud is exact: its largest error is half of `EXACT` (Tippett 1925;
+design/matching_constants.md)"""
 
 Progress = Callable[[str], None]
 """is handed a few words on what is done"""
@@ -63,6 +65,49 @@ def about_x(angle: float) -> Reals:
     """The rotation (3, 3) about x by which theta grows by an angle [rad]."""
     cosine, sine = np.cos(angle), np.sin(angle)
     return np.array([[1.0, 0.0, 0.0], [0.0, cosine, sine], [0.0, -sine, cosine]])
+
+
+@dataclass(frozen=True, eq=False)
+class BestSoFar:
+    """The nearest matches so far, by their number of parameters, as the last may be interrupted, or not built."""
+
+    found: dict[int, list["Match"]] = field(default_factory=dict)
+
+    def note(self, found: "Match") -> None:
+        """Keeps the end of a round if few of as many parameters are nearer."""
+        if np.isfinite(found.mean_distance):
+            alike = [*self.found.get(count := len(found.problem.paths), ()), found]
+            self.found[count] = sorted(alike, key=lambda each: each.mean_distance)[:KEPT_DESIGNS]
+
+    def built(
+        self, least_tolerance: float = 0.0, suits: Callable[["Match"], bool] = lambda _: True
+    ) -> tuple["Match", Any] | None:
+        """The nearest match that suits and can be built no finer than a tolerance, of the chord, and what it builds."""
+        suitable = filter(suits, chain.from_iterable(self.found.values()))
+        for found in sorted(suitable, key=lambda each: each.mean_distance):
+            tolerance = getattr(found.design, "tolerance", None)
+            design = found.design.changed({} if tolerance is None else {"tolerance": max(tolerance, least_tolerance)})
+            try:
+                return replace(found, design=design), design.build()
+            except BladewrightError:
+                continue
+        return None
+
+    def instead_of(self, refused: "Match", error: Exception, *, structured: bool) -> tuple["Match", Any, str]:
+        """The same of the family of a match that cannot be built, with its parameters or fewer, and a note.
+
+        Raises FitError where there is none.
+        """
+        paths = refused.problem.paths
+
+        def suits(found: "Match") -> bool:
+            alike = found.problem.paths == paths if structured else len(found.problem.paths) <= len(paths)
+            return alike and isinstance(found.design, type(refused.design))
+
+        found, refusal = self.built(suits=suits), f"the nearest design cannot be built ({error})"
+        if found is None:
+            raise FitError(f"{refusal}; give a start design, or bounds that keep off it") from error
+        return *found, f"{refusal}, and the nearest that can is given"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -78,9 +123,7 @@ class Task:
     bounds: Mapping[str, tuple[float, float]]
     """lowest and highest values by pattern, in the units of the fields"""
     progress: Progress = lambda _: None
-    """is handed a few words on what is done"""
     regularisation_factor: float = 1.0
-    """factor of the regularisation"""
     margin_factor: float = 1.0
     """factor of the margin that keeps edge radii from what is refused"""
     precision: Reals | None = None
@@ -102,7 +145,6 @@ class Task:
     held: frozenset[str] = frozenset()
     """parameters that are held as the points do not determine them"""
     best_so_far: BestSoFar = field(default_factory=BestSoFar)
-    """the nearest designs that searches have reached"""
 
     @property
     def dimension(self) -> int:
@@ -133,18 +175,15 @@ class Task:
 
     def part(self, rows: NDArray[np.intp]) -> "Task":
         """The same task with some of the points (m,)."""
-        if len(rows) == len(self.points):
-            return self
-        precision = None if self.precision is None else self.precision[rows]
-        trusted = None if self.trusted is None else self.trusted[rows]
-        part = replace(self, points=self.points[rows], weights=self.weights[rows])
-        return replace(part, precision=precision, trusted=trusted)
+        every: dict[str, Any] = {name: getattr(self, name) for name in ("points", "weights", "precision", "trusted")}
+        return replace(self, **{name: given[rows] for name, given in every.items() if given is not None})
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Match:
     """A design found for a cloud: where a search ended."""
 
+    task: Task
     design: Design
     problem: MatchProblem
     state: PlacedCloud
@@ -153,12 +192,7 @@ class Match:
     damping: float
     evaluations: int
     converged: bool = False
-    """whether the last descent converged"""
     interrupted: bool = False
-    turn: float = 0.0
-    """angle about x by which the task's points are turned [rad]"""
-    held: frozenset[str] = frozenset()
-    """parameters of the task that are held as the points do not determine them"""
 
     @property
     def model(self) -> Model:
@@ -192,22 +226,10 @@ class Match:
         return float(np.max(self.state.footpoints.distances[self.rows]))
 
 
-NOISE_CORRELATION = 0.15
-"""share of the misfit that neighbours have in common below which the misfit is noise (design/matching_constants.md)."""
-FAR_OFF = 3.0
-"""standard deviations of the noise, by the median, beyond which the root mean square of a misfit is none of it: half
-and twice change nothing measured (design/matching_constants.md)."""
-
-
 def has_systematic_misfit(match: Match) -> bool:
     """Whether a search ended at a misfit that is not noise: neighbours share it, or few points are far off."""
     estimate = match.noise_estimate
     return estimate.correlation > NOISE_CORRELATION or match.rms * match.model.chord > FAR_OFF * estimate.noise
-
-
-EXACT_NOISE = 1e-5
-"""noise, of the chord, below which a cloud is exact: the largest of 5,000 normal errors is then half of what exact
-points are met within. The largest of many normal errors: Tippett 1925."""
 
 
 def is_exact(match: Match) -> bool:
@@ -240,14 +262,13 @@ def searched(
     settled: float = SETTLED_RATIO,
     fading: bool = False,
 ) -> Match:
-    """The design nearest to the cloud that a search from `start` finds, with the structure of `start`.
+    """The design nearest to the cloud that a search from `start`, a design or a match evaluated for it, finds.
 
-    `start` is a design, or a match that is evaluated for the task and the first round's noise. That is `noise`, of the
-    chord; None takes the misfit of the start. `min_reduction` is the relative reduction of the cost that a step must
-    predict. The search ends after a round that is `enough`, or that leaves more than the share `settled` of the misfit.
-    As long as the misfit is systematic, the regularisation does not rise, and falls where it is `fading`.
-    Raises FitError where the start has no shape, and KeyboardInterrupt after it has noted the best design of a round
-    that was interrupted.
+    The first round's `noise`, of the chord, is that of the match, or the misfit of the start. `min_reduction` is the
+    relative reduction of the cost that a step must predict. The search ends after a round that is `enough`, or leaves
+    more than the share `settled` of the misfit. While the misfit is systematic, the regularisation does not rise, and
+    falls where it is `fading`. Raises FitError where the start has no shape, and KeyboardInterrupt after it has noted
+    the best design of a round that was interrupted.
     """
     found, rounds_without_gain = start if isinstance(start, Match) else evaluated(task, start, noise=noise), 0
     task.best_so_far.note(found)
@@ -297,20 +318,22 @@ def evaluated(task: Task, design: Design, *, noise: float | None, before: Match 
     walls = task.walls or (task.outline if task.preliminary else ())
     ends = blade_ends_of(points, footpoints, shape, noise_estimate.inliers, walls)
     rows = noise_estimate.inliers & ~ends.on_end_face
-    misfit = float(np.sqrt(np.mean(footpoints.distances[rows] ** 2))) / model.chord
+    if noise is None:
+        noise = float(np.sqrt(np.mean(footpoints.distances[rows] ** 2))) / model.chord
     # of a cloud without noise the true edge is to cost nothing, but where points are doubted
     exact = task.allow_outliers and noise_estimate.noise < EXACT * float(np.max(np.ptp(points, axis=0)))
     scales = scales_of(start, paths, model.chord, task.bounds)
     share = noise_estimate.independent_share(len(paths))
     shown, own = ends.in_rows(model.chord), 1.0 if task.preliminary else share
     regularisation = regularisation_of(start, paths, scales.size, ends_shown=shown, independent_share=own)
+    regularisation = regularisation.scaled(task.regularisation_factor / float(np.sqrt(share / own)))
     cloud_residuals = CloudResiduals(
         points=points,
         roots=np.sqrt(task.weights * rows),
         model=model,
         ends=ends,
         overhang=edge_overhang_of(points, shape.sides, rows, exact=exact, cut_edges=task.cut_edges),
-        noise=misfit if noise is None else noise,
+        noise=noise,
         precision=np.ones(len(points)) if task.precision is None else task.precision,
     )
     begun = PlacedCloud(shape=shape, footpoints=footpoints)
@@ -319,20 +342,19 @@ def evaluated(task: Task, design: Design, *, noise: float | None, before: Match 
         start=start,
         paths=paths,
         scales=scales,
-        regularisation=regularisation.scaled(task.regularisation_factor / float(np.sqrt(share / own))),
-        independent_share=share / task.regularisation_factor**2,
+        regularisation=regularisation.scaled(noise),
+        edge_height_noise=noise / float(np.sqrt(share / task.regularisation_factor**2)),
         begun=begun,
         margin=EDGE_RADIUS_MARGIN[points.shape[1]] * task.margin_factor,
     )
     return Match(
+        task=task,
         design=design,
         problem=problem,
         state=begun,
         noise_estimate=noise_estimate,
         ends=ends,
         damping=FIRST_DAMPING if before is None else before.damping,
-        turn=task.turn,
-        held=task.held,
         evaluations=1 if before is None else before.evaluations + 1,
     )
 
@@ -358,10 +380,7 @@ def _moved(match: Match, z: Reals) -> Match:
 
 
 def without_false_outliers(task: Task, match: Match) -> Match:
-    """A match of the same structure to those outliers too that may be points of the blade, where it takes most of them.
-
-    A nose that is not found leaves its own points out, and what is searched without them never finds it.
-    """
+    """A match to those outliers too that may be points of a nose that is not found, where it takes most of them."""
     inliers, feet, systematic = match.noise_estimate.inliers, match.state.footpoints, has_systematic_misfit(match)
     doubted = doubted_outliers(~inliers & ~match.ends.on_end_face, task.points, feet, systematic=systematic)
     if not np.any(doubted):
