@@ -29,32 +29,28 @@ from bladewright.nurbs.surface import Surface
 GRID = {2: (2000, 1), 3: (241, 61)}
 """places along and across a side from which samples are chosen, by dimension"""
 SAMPLES = 8000
-"""evenly spread samples, about a hundredth of the blade from each other: as near as true footpoints need to start;
-half and twice change nothing measured (design/matching_constants.md)"""
+"""evenly spread samples, as near to each other as true footpoints need to start (design/matching_constants.md)"""
 SEARCH_POINTS, DECIDING_POINTS = 300, 3000
-"""points of the cloud that choose among the starts, and those that the nearest is followed with. They bound the time:
-the motion has six unknowns, and of 3000 points its noise is a fiftieth of theirs (design/matching_constants.md)."""
+"""points of the cloud that choose among the starts, and those that the nearest is followed with; they bound the time
+(design/matching_constants.md)"""
 FIRST_WIDTH, SHRINKING = 0.05, 4.0
-"""first width of the weights, of the blade's extent, and the factor by which it shrinks at most in a step: at once, a
-prism with outliers is found nine times as far off along its span (design/matching_constants.md)"""
+"""first width of the weights, of the blade's extent, and the factor by which it shrinks at most in a step
+(design/matching_constants.md)"""
 LEAST_WIDTH, LAST_STEP = 1e-8, 1e-4
 """least width of the weights, to which footpoints are exact, of the blade's extent; and last step, of the width that
-the noise needs: half and twice lay four starts within 1.2e-6 of the extent of each other, of half a percent that they
-are off (design/matching_constants.md)"""
+the noise needs (design/matching_constants.md)"""
 MOST_STEPS = 60
-"""steps with true footpoints at most: it bounds the time where a blade of another shape does not settle. Half lays one
-of four starts 1.4e-5 of the extent elsewhere, twice none (design/matching_constants.md)."""
+"""steps with true footpoints at most: it bounds the time where a blade of another shape does not settle
+(design/matching_constants.md)"""
 WEAKEST_FREEDOM, LARGEST_DEVIATION = 1e-5, 0.01
 """singular value, of the largest, below which the points do not determine a degree of freedom, and standard deviation,
-of the blade's extent, above which their noise does not let them: half and twice change nothing measured
-(design/matching_constants.md)"""
+of the blade's extent, above which their noise does not let them (design/matching_constants.md)"""
 AMBIGUOUS = 2.0
-"""ratio of the mean distances of two motions to closest samples up to which a blade that its own shape is off tells
-neither from the other: of six designs shaken by 3 % a propeller's turned over is nearer than its own, by 0.78, and a
-compressor stator's farther, by 1.39 (design/matching.md)."""
+"""ratio of the mean distances of two motions to closest samples up to which neither is told from the other by a blade
+whose shape is off (design/matching.md, design/matching_constants.md)"""
 OTHER_BLADE, LEAST_SHARE = 5e-3, 0.7
-"""distance, of the chord, within which points are of this blade: as far as a match may be off where no tolerance is
-asked; and share of the points that must be: half and twice change nothing measured (design/matching_constants.md)"""
+"""distance, of the chord, within which points are of this blade, as far as a match may be off where no tolerance is
+asked; and share of the points that must be (design/matching_constants.md)"""
 OTHER_BLADE_NOTE = "the cloud does not lie on the design's blade"
 """what a note begins with where the cloud is of another blade"""
 FREEDOMS = {
@@ -252,16 +248,15 @@ def composed(second: Motion, first: Motion) -> Motion:
 AXES_POINTS = 2000
 """points that are looked at; it bounds the time (design/matching_constants.md)."""
 PRISM_THICKNESS = 1e-3
-"""thickness of a projection, of the cloud's extent, below which the cloud is a prism: a few times the noise of a
-scan; half and twice change nothing measured (design/matching_constants.md)"""
+"""thickness of a projection, of the cloud's extent, below which the cloud is a prism: a few times a scan's noise
+(design/matching_constants.md)"""
 NORMAL_NEIGHBOURS, CURVE_NEIGHBOURS = 12, 60
-"""nearest points that a plane is laid through, and a parabola of the section, on which many stand above each other:
-with fewer, 16 x 10 points of a stator pass for a prism (design/matching_constants.md)."""
+"""nearest points that a plane is laid through, and a parabola of the section, on which many stand above each other
+(design/matching_constants.md)"""
 STEPS, SETTLED = 12, 1e-8
 """steps of the least squares at most, and the last turn [rad] (design/matching_constants.md)"""
 EDGE = 0.1
-"""part of the chord whose thickness is that of an edge: half and twice change nothing measured
-(design/matching_constants.md)"""
+"""part of the chord whose thickness is that of an edge (design/matching_constants.md)"""
 CURES = (
     "name the axis of rotation (--axis z), give a design of about this blade (--align --start), or move the points "
     "into the machine's axes, x downstream"

@@ -42,33 +42,25 @@ searches with nothing asked end within it (design/matching.md)."""
 AXES_HINT = "x must be the machine axis: say which column is which (--columns), or name the axis (--axis)"
 """what may be wrong with a cloud near which no blade is found"""
 GROSS_DEVIATION = (1.5e-3, 5e-3)
-"""mean and largest deviation, of the chord, beyond which no match is trusted without a tolerance. A mean of 0.15 % on
-both sides of a turbine's throat of 0.3 chords changes it by 1 %; 0.5 % is half the radius of a usual leading edge.
-So well are ends to be known where nothing is asked, and edges (5e-3), whose sharp tips move by more than sides."""
+"""mean and largest deviation, of the chord, beyond which no match is trusted without a tolerance; so well are ends, and
+edges, to be known where nothing is asked (design/matching_constants.md)"""
 SHOWN_SIDE = 2.4e-3
-"""how well a place of the sides between the edges is to be known where nothing is asked, of the chord: in the middle
-between the bands of sides that are met, 1.7e-3 at most, and those of sides that are off between their points, 3.4e-3 at
-least (design/matching.md)"""
+"""how well sides between the edges are to be known where nothing is asked, of the chord (design/matching.md)"""
 SHARED_VARIANCE = 0.5
-"""share of the variance that neighbours have in common from which more of a deviation is the shape's than noise: half
-and twice change notes only (design/matching_constants.md)"""
+"""share of the variance that neighbours have in common from which more of a deviation is the shape's than noise
+(design/matching_constants.md)"""
 LARGEST_OUTLIER_SHARE = 0.1
-"""share of the points that may be outliers: with more, the cloud is not one blade of the family; half and twice change
-nothing measured (design/matching_constants.md)"""
+"""share of the points that may be outliers; more are not one blade of the family (design/matching_constants.md)"""
 LISTED_NAMES = 5
 """parameters that a note lists by name"""
 SIDES = ("upper", "lower")
 """names of the sides, by their number in footpoints"""
 HALF_BLADE_WIDTH = 0.5
-"""width of the blade where its points end, of its thickest, from which it is half a blade: half and twice change
-nothing measured (design/matching_constants.md)"""
+"""width where the points end, of the blade's thickest, from which it is half a blade (design/matching_constants.md)"""
 SHEET_THICKNESS = 3e-3
-"""thickness, of the chord, below which no blade is. Two sides laid through one side of Aachen's stator were 0.2 % of
-the chord apart; the thinnest example, an impeller, has 1.3 %. Half and twice change nothing measured
-(design/matching_constants.md)."""
+"""thickness, of the chord, below which no blade is (design/matching_constants.md)"""
 MIN_SIDE_SHARE = 0.1
-"""share of the points between the edges below which a side is not shown: half and twice change nothing measured
-(design/matching_constants.md)"""
+"""share of the points between the edges below which a side is not shown (design/matching_constants.md)"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,9 +102,9 @@ class Acceptance:
         yield from coarse
         if self._nothing_asked:
             yield from self._too_many_parameters()
-        if self._nothing_asked and not coarse:
-            # what a match that is not found misses widens its bands
-            yield from self._not_shown()
+            if not coarse:
+                # what a match that is not found misses widens its bands
+                yield from self._not_shown()
         if not self.target.structured:
             yield from (f"{each}: is it a whole blade? Give points there, or a start" for each in self._bare_stretches)
         yield from self._partly_shown()
