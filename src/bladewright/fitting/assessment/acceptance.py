@@ -106,18 +106,18 @@ class Acceptance:
                 # what a match that is not found misses widens its bands
                 yield from self._not_shown()
         if not self.target.structured:
-            yield from (f"{each}: is it a whole blade? Give points there, or a start" for each in self._bare_stretches)
+            yield from (f"{each}: is it a whole blade? Give points there, or a start" for each in self._long_gaps())
         yield from self._partly_shown()
 
     def notes(self) -> Iterator[str]:
         """What else there is to know, each a sentence."""
         measurement, chord = self.measurement, self.match.model.chord
         if np.any(measurement.faced):
-            faced = f"{np.count_nonzero(measurement.faced)} of {measurement.outliers} outliers"
-            yield f"{faced} lie on the end faces: the sides are met without them"
+            faced, outliers = np.count_nonzero(measurement.faced), np.count_nonzero(measurement.outliers)
+            yield f"{faced} of {outliers} outliers lie on the end faces: the sides are met without them"
         if self.target.open and EXACT * chord < self._largest <= NEAR_EVERYWHERE * chord and self._is_systematic:
             yield f"near enough to make, but {self._not_found}"
-        if measurement.dimension == 3 and self._mean > GROSS_DEVIATION[0] * chord:
+        if measurement.footpoints.points.shape[1] == 3 and self._mean > GROSS_DEVIATION[0] * chord:
             yield f"a blade in other axes is met no nearer than this: {AXES_HINT}"
         for name, (_, share) in self._uncovered_edges.items():
             if share <= HALF_BLADE_WIDTH:
@@ -130,7 +130,7 @@ class Acceptance:
         if self._nothing_asked:
             yield from self._bare_parts()
         if self.target.structured:
-            yield from self._bare_stretches
+            yield from self._long_gaps()
         if self._loose_ends:
             yield self._where_it_ends(self._loose_ends)
         estimates = self.statistics.estimates
@@ -162,15 +162,6 @@ class Acceptance:
     def _bands(self) -> ShapeBands:
         return shape_bands(self.match)
 
-    @cached_property
-    def _bare_stretches(self) -> list[str]:
-        """Long gaps between the points around the blade, each a sentence."""
-        chord = self.match.model.chord
-        return [
-            f"no point shows the {place}: {self._length(way, 3)} without one, {100 * way / chord:.2g} % of the chord"
-            for way, place in bare_stretches(self.match)
-        ]
-
     @property
     def _mean(self) -> float:
         return float(np.mean(self.measurement.distances[self.measurement.inliers]))
@@ -186,7 +177,7 @@ class Acceptance:
         """Outliers that are too many, too many beside each other, or where chance does not put them."""
         measurement, chord = self.measurement, self.match.model.chord
         distances, count = measurement.distances, len(measurement.distances)
-        outliers = ~measurement.inliers & ~measurement.faced & (measurement.set_aside == "")
+        outliers = measurement.outliers & ~measurement.faced
         off = int(np.count_nonzero(outliers))
         if off > LARGEST_OUTLIER_SHARE * count:
             yield f"{off} of {count} points lie off the blade: is it one blade, and of this family?"
@@ -283,7 +274,7 @@ class Acceptance:
         limits = np.where(np.any(list(self._bare.values()), axis=0), np.inf, np.maximum(self._limits, one_point))
         worst = int(np.argmax(bands.half_widths / limits))
         if bands.half_widths[worst] > limits[worst]:
-            along = "" if self.measurement.dimension == 2 else f", v = {bands.v[worst]:.2g}"
+            along = f", v = {bands.v[worst]:.2g}" if self.measurement.footpoints.points.shape[1] == 3 else ""
             yield (
                 f"the points do not show the {SIDES[bands.side[worst]]} side at u = {bands.u[worst]:.2g}{along}: it is "
                 f"known there to {self._length(bands.half_widths[worst])} either way (95 %), and "
@@ -314,6 +305,12 @@ class Acceptance:
                     f"there to {self._length(np.max(bands.half_widths[rows]))} either way (95 %)"
                 )
 
+    def _long_gaps(self) -> Iterator[str]:
+        """Long gaps between the points around the blade."""
+        for way, place in bare_stretches(self.match):
+            share = 100 * way / self.match.model.chord
+            yield f"no point shows the {place}: {self._length(way, 3)} without one, {share:.2g} % of the chord"
+
     def _partly_shown(self) -> Iterator[str]:
         """Why the points must be those of a part of a blade only, if anything shows it."""
         feet, thickness = self.match.state.footpoints, least_thickness(self.match)
@@ -334,10 +331,7 @@ class Acceptance:
 
 
 def _largest_group(feet: Footpoints, outliers: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """The largest group of outliers (n,) beside each other, where there may be one that is too large.
-
-    Outliers scatter; a part of the blade that is not found does not.
-    """
+    """The largest group of outliers (n,) beside each other, where there may be one too large: strewn ones scatter."""
     points, rows = feet.points + feet.miss, np.flatnonzero(outliers)
     if len(rows) <= LARGEST_GROUP * len(points):
         return rows[:0]
