@@ -21,7 +21,7 @@ from bladewright.nurbs.blossom import knot_change
 from bladewright.nurbs.closest import Descents, Places
 from bladewright.nurbs.collocation import collocation
 from bladewright.nurbs.curve import Curve
-from bladewright.nurbs.refine import Direction, inserted
+from bladewright.nurbs.refine import Direction, direction_of, inserted
 from bladewright.nurbs.surface import Surface
 
 TENSION = 0.01
@@ -208,11 +208,10 @@ class Net(Shape):
 
 def net_of(shape: Curve | Surface, *, closed: bool = False) -> Net:
     """A curve or surface as a net; of a closed curve the nearest on its distinct knots."""
-    if isinstance(shape, Curve):
-        degrees: tuple[int, ...] = (shape.degree,)
-        knots: tuple[Reals, ...] = (np.pad(breaks(shape.knots), shape.degree, "edge") if closed else shape.knots,)
-    else:
-        degrees, knots = (shape.degree_u, shape.degree_v), (shape.knots_u, shape.knots_v)
+    along = [direction_of(shape, each) for each in DIRECTIONS[: np.ndim(shape.control_points) - 1]]
+    knots, degrees = tuple(own for own, _ in along), tuple(degree for _, degree in along)
+    if closed:
+        knots = (np.pad(breaks(knots[0]), degrees[0], "edge"),)
     points = shape.control_points.reshape(-1, shape.control_points.shape[-1])
     weights = np.ones(len(points)) if shape.weights is None else shape.weights.ravel()
     net = Net(knots=knots, degrees=degrees, points=points, log_weights=np.log(weights), closed=closed)

@@ -177,11 +177,8 @@ class ShapeMatch(Generic[S]):
         """The figures of a fit, in the unit of the points that were given."""
         rank, unknowns = self.rank, len(self.singular_values)
         if rank < unknowns:
-            open_note = (
-                f"the points determine {rank} of {unknowns} directions of the unknowns: the others bend the shape as "
-                "little as they can"
-            )
-            notes = (*notes, open_note)
+            known = f"the points determine {rank} of {unknowns} directions of the unknowns"
+            notes = (*notes, f"{known}: the others bend the shape as little as they can")
         return {
             "distances": self.distances * request.extent,
             "inliers": self.inliers,
