@@ -20,11 +20,10 @@ from bladewright.designs import Design
 from bladewright.errors import FitError
 from bladewright.fitting.assessment.result import Motion
 from bladewright.fitting.clouds.thinning import MOST_POINTS, even_subset, random_subset, without_isolated_points
-from bladewright.fitting.matching.footpoints import Side, footpoints_at, nearest_footpoints
+from bladewright.fitting.matching.footpoints import Footpoints, Side, concatenated, footpoints_at, nearest_footpoints
 from bladewright.fitting.models.blunt_edges import sides_of
 from bladewright.numerics.robust import TUKEY_WIDTH, median_deviation, tukey_weights
 from bladewright.nurbs.basis import Reals
-from bladewright.nurbs.surface import Surface
 
 GRID = {2: (2000, 1), 3: (241, 61)}
 """places along and across a side from which samples are chosen, by dimension"""
@@ -85,8 +84,8 @@ def registrations(points: Reals, design: Design) -> list[tuple[Motion, tuple[str
     cloud = cloud[np.isfinite(cloud).all(axis=1)]
     if len(cloud) < 12:
         raise FitError(f"{len(cloud)} points were given: at least 12 are needed to find where they lie")
-    samples, normals = _samples(sides)
-    extent = float(np.max(np.ptp(samples, axis=0)))
+    samples = _samples(sides, dimension)
+    extent = float(np.max(np.ptp(samples.points, axis=0)))
     few = without_isolated_points(cloud[random_subset(len(cloud), MOST_POINTS)])
     few = few[even_subset(few, SEARCH_POINTS)]
 
@@ -97,7 +96,8 @@ def registrations(points: Reals, design: Design) -> list[tuple[Motion, tuple[str
         return found.miss, rows, np.concatenate([found.normals, found.beyond[past]])
 
     some = cloud[random_subset(len(cloud), DECIDING_POINTS)]
-    tried = sorted((_rough(few, samples, normals, start) for start in _starts(few, samples)), key=lambda each: each[0])
+    tree, starts = cKDTree(samples.points), _starts(few, samples.points)
+    tried = sorted((_rough(few, tree, samples.normals, start, extent) for start in starts), key=lambda each: each[0])
     apart = list[Motion]()
     for off, motion in tried:
         same = (np.max(_lengths(motion(few) - other(few))) < FIRST_WIDTH * extent for other in apart)
@@ -122,18 +122,13 @@ def _followed(points: Reals, motion: Motion, touching: Callable[[Reals], Contact
     return motion
 
 
-def _samples(sides: tuple[Side, Side]) -> tuple[Reals, Reals]:
-    """Points (m, d) spread evenly over the sides, and the unit normals there."""
-    found = []
-    for k, side in enumerate(sides):
-        along, across = GRID[3 if isinstance(side, Surface) else 2]
-        u = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, along))) / 2.0
-        u, v = (each.ravel() for each in np.meshgrid(u, np.linspace(0.0, 1.0, across), indexing="ij"))
-        points = side(u, v) if isinstance(side, Surface) else side(u)
-        rows = even_subset(points, SAMPLES // 2)
-        at = footpoints_at(points[rows], sides, np.full(len(rows), k, dtype=np.intp), u[rows], v[rows])
-        found.append(at)
-    return np.concatenate([at.points for at in found]), np.concatenate([at.normals for at in found])
+def _samples(sides: Sequence[Side], dimension: int) -> Footpoints:
+    """Places spread evenly over the sides."""
+    along, across = GRID[dimension]
+    u = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, along))) / 2.0
+    u, v = (each.ravel() for each in np.meshgrid(u, np.linspace(0.0, 1.0, across), indexing="ij"))
+    every = [footpoints_at(np.zeros((len(u), dimension)), sides, np.full(len(u), k), u, v) for k in (0, 1)]
+    return concatenated([each.part(even_subset(each.points, SAMPLES // 2)) for each in every])
 
 
 def _starts(cloud: Reals, samples: Reals) -> list[Motion]:
@@ -147,10 +142,9 @@ def _starts(cloud: Reals, samples: Reals) -> list[Motion]:
     return [Motion(rotation=each, translation=centre - each @ pivot) for each in rotations]
 
 
-def _rough(points: Reals, samples: Reals, normals: Reals, motion: Motion) -> tuple[float, Motion]:
+def _rough(points: Reals, tree: cKDTree, normals: Reals, motion: Motion, extent: float) -> tuple[float, Motion]:
     """The motion that closest samples lead to, point to point, then point to plane, and the mean distance there."""
-    tree, dimension, every = cKDTree(samples), points.shape[1], np.arange(len(points))
-    extent = float(np.max(np.ptp(samples, axis=0)))
+    samples, dimension, every = tree.data, points.shape[1], np.arange(len(points))
     spacing = float(np.max(tree.query(samples, k=2)[0]))
 
     def contact(moved: Reals, *, planes: bool) -> Contact:
