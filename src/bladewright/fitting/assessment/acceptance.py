@@ -259,12 +259,10 @@ class Acceptance:
         bands = self._bands
         known, found = bands.half_widths <= GROSS_DEVIATION[1] * self.match.model.chord, {}
         for name, past in past_points(self.match, bands.side, bands.u, bands.v).items():
-            if name in EDGE_PARAMETERS:
-                away = np.abs(bands.u - EDGE_PARAMETERS[name])
-                found[name] = past & (away < BETWEEN_EDGES) & np.any(known[away == 0.0])
-            else:
-                away = np.abs(bands.v - END_PARAMETERS[name])
-                found[name] = past & known & (away < 0.5) & np.any(known[away == 0.0])
+            at, end = (bands.u, EDGE_PARAMETERS[name]) if name in EDGE_PARAMETERS else (bands.v, END_PARAMETERS[name])
+            away = np.abs(at - end)
+            near = away < BETWEEN_EDGES if name in EDGE_PARAMETERS else known & (away < 0.5)
+            found[name] = past & near & np.any(known[away == 0.0])
         return found
 
     def _not_shown(self) -> Iterator[str]:

@@ -91,11 +91,10 @@ def measured(
     shape = ModelShape(design=None, sides=sides, exact=exact)
     on_end_face = blade_ends_of(points, footpoints, shape, set_aside == "").on_end_face
     deviations = np.where(footpoints.heights < 0.0, -1.0, 1.0) * off
-    places = np.array(["upper", "lower"], dtype="<U20")[footpoints.side]
     near_edges = [footpoints.u < EDGE_BAND, footpoints.u > 1.0 - EDGE_BAND]
     footpoints, on_face = on_sides(footpoints, blunt_edges_of(built))
-    places = np.select([on_face < 0, on_face > 0], EDGES, places)
-    places = np.where(set_aside == "", places, set_aside)
+    on_side = np.where(footpoints.side == 0, "upper", "lower")
+    places = np.select([set_aside != "", on_face < 0, on_face > 0], [set_aside, *EDGES], on_side)
     past_end = np.abs(np.sum(footpoints.miss * footpoints.beyond, axis=1)) > np.abs(footpoints.heights)
     regions = np.select([past_end, *near_edges], ["ends", *EDGE_PARAMETERS], "sides")
     if isinstance(built, Blade):
