@@ -39,8 +39,7 @@ LEAST_WIDTH, LAST_STEP = 1e-8, 1e-4
 """least width of the weights, to which footpoints are exact, of the blade's extent; and last step, of the width that
 the noise needs (design/matching_constants.md)"""
 MOST_STEPS = 60
-"""steps with true footpoints at most: it bounds the time where a blade of another shape does not settle
-(design/matching_constants.md)"""
+"""steps with true footpoints at most: those of a blade of another shape do not settle (design/matching_constants.md)"""
 WEAKEST_FREEDOM, LARGEST_DEVIATION = 1e-5, 0.01
 """singular value, of the largest, below which the points do not determine a degree of freedom, and standard deviation,
 of the blade's extent, above which their noise does not let them (design/matching_constants.md)"""

@@ -47,8 +47,7 @@ edges, to be known where nothing is asked (design/matching_constants.md)"""
 SHOWN_SIDE = 2.4e-3
 """how well sides between the edges are to be known where nothing is asked, of the chord (design/matching.md)"""
 SHARED_VARIANCE = 0.5
-"""share of the variance that neighbours have in common from which more of a deviation is the shape's than noise
-(design/matching_constants.md)"""
+"""share of variance common to neighbours above which a deviation is the shape's (design/matching_constants.md)"""
 LARGEST_OUTLIER_SHARE = 0.1
 """share of the points that may be outliers; more are not one blade of the family (design/matching_constants.md)"""
 LISTED_NAMES = 5

@@ -20,8 +20,7 @@ from bladewright.numerics.robust import DEVIATION_OVER_MEDIAN
 from bladewright.nurbs.basis import Reals
 
 ROW_SPREAD_OF_NOISE = 2.0
-"""spread of the points at an end, of the cloud's noise, from which they stand in no row
-(design/matching_constants.md)"""
+"""spread of points at an end, of the cloud's noise, from which they stand in no row (design/matching_constants.md)"""
 WIDTH_OVER_SPREAD = 4.0 / DEVIATION_OVER_MEDIAN
 """width of evenly scattered values over the deviation that the median of their distances from the middle tells"""
 PARTS = 5

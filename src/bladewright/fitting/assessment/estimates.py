@@ -18,8 +18,7 @@ IDENTIFIED_SPREAD = 0.3
 """standard deviation, of a parameter's own scale, below which the cloud determines it: its 95 % interval is then about
 one scale wide (design/matching_constants.md)"""
 CORRELATED_POINTS, CORRELATED_NEIGHBOURS = 2000, 512
-"""points whose residuals are compared with their neighbours', and neighbours at most; they bound the time
-(design/matching_constants.md)"""
+"""points that are compared with neighbours, and these at most; they bound the time (design/matching_constants.md)"""
 FIRST_NEIGHBOURS, BY_CHANCE = 4, 2.0
 """neighbours that are compared first, twice as many each time, and standard errors that a correlation has by chance: 95
 in 100 are lower (Bartlett 1946)"""
