@@ -69,8 +69,7 @@ def test_outliers_beside_each_other_are_a_shape_that_is_not_found_unless_they_ar
     inliers = np.ones(len(points), dtype=bool)
     inliers[left_out] = False
     deviations = np.where(inliers, measurement.deviations, off * built.chord)
-    noise_estimate = replace(measurement.noise_estimate, inliers=inliers)
-    measurement = replace(measurement, noise_estimate=noise_estimate, deviations=deviations)
+    measurement = replace(measurement, inliers=inliers, deviations=deviations)
     failures = accepted(found, measurement, MatchTarget(structured=True)).failures()
     assert any("beside each other" in each for each in failures) is said
 
@@ -98,7 +97,7 @@ def test_points_of_a_solid_on_its_end_faces_are_said_to_be_there():
     stray = np.mean(sides, axis=0) + 0.5 * np.ptp(sides, axis=0)
     points = np.concatenate([sides, face, stray[None]])
     at = measured(points, built)
-    allow_outliers = ~at.noise_estimate.inliers[len(sides) : -1]
+    allow_outliers = ~at.inliers[len(sides) : -1]
     # those beside the outline are as near to the sides, on which an exact cloud has them
     assert np.mean(at.faced[len(sides) : -1][allow_outliers]) > 0.95
     assert not np.any(at.faced[: len(sides)])

@@ -331,7 +331,7 @@ def _reported(
         covariance=statistics.covariance,
         rank=statistics.rank,
         condition=statistics.condition,
-        noise=measurement.noise_estimate.noise,
+        noise=measurement.noise,
         extrema=extrema,
         tolerance=target.tolerance,
         failures=(*acceptance.failures(), *failures),

@@ -20,41 +20,35 @@ from bladewright.designs import Design
 from bladewright.errors import FitError
 from bladewright.fitting.assessment.result import Motion
 from bladewright.fitting.clouds.thinning import MOST_POINTS, even_subset, random_subset, without_isolated_points
-from bladewright.fitting.matching.footpoints import Side, footpoints_at, nearest_footpoints
+from bladewright.fitting.matching.footpoints import Footpoints, Side, concatenated, footpoints_at, nearest_footpoints
 from bladewright.fitting.models.blunt_edges import sides_of
 from bladewright.numerics.robust import TUKEY_WIDTH, median_deviation, tukey_weights
 from bladewright.nurbs.basis import Reals
-from bladewright.nurbs.surface import Surface
 
 GRID = {2: (2000, 1), 3: (241, 61)}
 """places along and across a side from which samples are chosen, by dimension"""
 SAMPLES = 8000
-"""evenly spread samples, about a hundredth of the blade from each other: as near as true footpoints need to start;
-half and twice change nothing measured (design/matching_constants.md)"""
+"""evenly spread samples, as near to each other as true footpoints need to start (design/matching_constants.md)"""
 SEARCH_POINTS, DECIDING_POINTS = 300, 3000
-"""points of the cloud that choose among the starts, and those that the nearest is followed with. They bound the time:
-the motion has six unknowns, and of 3000 points its noise is a fiftieth of theirs (design/matching_constants.md)."""
+"""points of the cloud that choose among the starts, and those that the nearest is followed with; they bound the time
+(design/matching_constants.md)"""
 FIRST_WIDTH, SHRINKING = 0.05, 4.0
-"""first width of the weights, of the blade's extent, and the factor by which it shrinks at most in a step: at once, a
-prism with outliers is found nine times as far off along its span (design/matching_constants.md)"""
+"""first width of the weights, of the blade's extent, and the factor by which it shrinks at most in a step
+(design/matching_constants.md)"""
 LEAST_WIDTH, LAST_STEP = 1e-8, 1e-4
 """least width of the weights, to which footpoints are exact, of the blade's extent; and last step, of the width that
-the noise needs: half and twice lay four starts within 1.2e-6 of the extent of each other, of half a percent that they
-are off (design/matching_constants.md)"""
+the noise needs (design/matching_constants.md)"""
 MOST_STEPS = 60
-"""steps with true footpoints at most: it bounds the time where a blade of another shape does not settle. Half lays one
-of four starts 1.4e-5 of the extent elsewhere, twice none (design/matching_constants.md)."""
+"""steps with true footpoints at most: those of a blade of another shape do not settle (design/matching_constants.md)"""
 WEAKEST_FREEDOM, LARGEST_DEVIATION = 1e-5, 0.01
 """singular value, of the largest, below which the points do not determine a degree of freedom, and standard deviation,
-of the blade's extent, above which their noise does not let them: half and twice change nothing measured
-(design/matching_constants.md)"""
+of the blade's extent, above which their noise does not let them (design/matching_constants.md)"""
 AMBIGUOUS = 2.0
-"""ratio of the mean distances of two motions to closest samples up to which a blade that its own shape is off tells
-neither from the other: of six designs shaken by 3 % a propeller's turned over is nearer than its own, by 0.78, and a
-compressor stator's farther, by 1.39 (design/matching.md)."""
+"""ratio of the mean distances of two motions to closest samples up to which neither is told from the other by a blade
+whose shape is off (design/matching.md, design/matching_constants.md)"""
 OTHER_BLADE, LEAST_SHARE = 5e-3, 0.7
-"""distance, of the chord, within which points are of this blade: as far as a match may be off where no tolerance is
-asked; and share of the points that must be: half and twice change nothing measured (design/matching_constants.md)"""
+"""distance, of the chord, within which points are of this blade, as far as a match may be off where no tolerance is
+asked; and share of the points that must be (design/matching_constants.md)"""
 OTHER_BLADE_NOTE = "the cloud does not lie on the design's blade"
 """what a note begins with where the cloud is of another blade"""
 FREEDOMS = {
@@ -89,8 +83,8 @@ def registrations(points: Reals, design: Design) -> list[tuple[Motion, tuple[str
     cloud = cloud[np.isfinite(cloud).all(axis=1)]
     if len(cloud) < 12:
         raise FitError(f"{len(cloud)} points were given: at least 12 are needed to find where they lie")
-    samples, normals = _samples(sides)
-    extent = float(np.max(np.ptp(samples, axis=0)))
+    samples = _samples(sides, dimension)
+    extent = float(np.max(np.ptp(samples.points, axis=0)))
     few = without_isolated_points(cloud[random_subset(len(cloud), MOST_POINTS)])
     few = few[even_subset(few, SEARCH_POINTS)]
 
@@ -101,7 +95,8 @@ def registrations(points: Reals, design: Design) -> list[tuple[Motion, tuple[str
         return found.miss, rows, np.concatenate([found.normals, found.beyond[past]])
 
     some = cloud[random_subset(len(cloud), DECIDING_POINTS)]
-    tried = sorted((_rough(few, samples, normals, start) for start in _starts(few, samples)), key=lambda each: each[0])
+    tree, starts = cKDTree(samples.points), _starts(few, samples.points)
+    tried = sorted((_rough(few, tree, samples.normals, start, extent) for start in starts), key=lambda each: each[0])
     apart = list[Motion]()
     for off, motion in tried:
         same = (np.max(_lengths(motion(few) - other(few))) < FIRST_WIDTH * extent for other in apart)
@@ -126,18 +121,13 @@ def _followed(points: Reals, motion: Motion, touching: Callable[[Reals], Contact
     return motion
 
 
-def _samples(sides: tuple[Side, Side]) -> tuple[Reals, Reals]:
-    """Points (m, d) spread evenly over the sides, and the unit normals there."""
-    found = []
-    for k, side in enumerate(sides):
-        along, across = GRID[3 if isinstance(side, Surface) else 2]
-        u = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, along))) / 2.0
-        u, v = (each.ravel() for each in np.meshgrid(u, np.linspace(0.0, 1.0, across), indexing="ij"))
-        points = side(u, v) if isinstance(side, Surface) else side(u)
-        rows = even_subset(points, SAMPLES // 2)
-        at = footpoints_at(points[rows], sides, np.full(len(rows), k, dtype=np.intp), u[rows], v[rows])
-        found.append(at)
-    return np.concatenate([at.points for at in found]), np.concatenate([at.normals for at in found])
+def _samples(sides: Sequence[Side], dimension: int) -> Footpoints:
+    """Places spread evenly over the sides."""
+    along, across = GRID[dimension]
+    u = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, along))) / 2.0
+    u, v = (each.ravel() for each in np.meshgrid(u, np.linspace(0.0, 1.0, across), indexing="ij"))
+    every = [footpoints_at(np.zeros((len(u), dimension)), sides, np.full(len(u), k), u, v) for k in (0, 1)]
+    return concatenated([each.part(even_subset(each.points, SAMPLES // 2)) for each in every])
 
 
 def _starts(cloud: Reals, samples: Reals) -> list[Motion]:
@@ -151,10 +141,9 @@ def _starts(cloud: Reals, samples: Reals) -> list[Motion]:
     return [Motion(rotation=each, translation=centre - each @ pivot) for each in rotations]
 
 
-def _rough(points: Reals, samples: Reals, normals: Reals, motion: Motion) -> tuple[float, Motion]:
+def _rough(points: Reals, tree: cKDTree, normals: Reals, motion: Motion, extent: float) -> tuple[float, Motion]:
     """The motion that closest samples lead to, point to point, then point to plane, and the mean distance there."""
-    tree, dimension, every = cKDTree(samples), points.shape[1], np.arange(len(points))
-    extent = float(np.max(np.ptp(samples, axis=0)))
+    samples, dimension, every = tree.data, points.shape[1], np.arange(len(points))
     spacing = float(np.max(tree.query(samples, k=2)[0]))
 
     def contact(moved: Reals, *, planes: bool) -> Contact:
@@ -252,16 +241,15 @@ def composed(second: Motion, first: Motion) -> Motion:
 AXES_POINTS = 2000
 """points that are looked at; it bounds the time (design/matching_constants.md)."""
 PRISM_THICKNESS = 1e-3
-"""thickness of a projection, of the cloud's extent, below which the cloud is a prism: a few times the noise of a
-scan; half and twice change nothing measured (design/matching_constants.md)"""
+"""thickness of a projection, of the cloud's extent, below which the cloud is a prism: a few times a scan's noise
+(design/matching_constants.md)"""
 NORMAL_NEIGHBOURS, CURVE_NEIGHBOURS = 12, 60
-"""nearest points that a plane is laid through, and a parabola of the section, on which many stand above each other:
-with fewer, 16 x 10 points of a stator pass for a prism (design/matching_constants.md)."""
+"""nearest points that a plane is laid through, and a parabola of the section, on which many stand above each other
+(design/matching_constants.md)"""
 STEPS, SETTLED = 12, 1e-8
 """steps of the least squares at most, and the last turn [rad] (design/matching_constants.md)"""
 EDGE = 0.1
-"""part of the chord whose thickness is that of an edge: half and twice change nothing measured
-(design/matching_constants.md)"""
+"""part of the chord whose thickness is that of an edge (design/matching_constants.md)"""
 CURES = (
     "name the axis of rotation (--axis z), give a design of about this blade (--align --start), or move the points "
     "into the machine's axes, x downstream"

@@ -42,33 +42,24 @@ searches with nothing asked end within it (design/matching.md)."""
 AXES_HINT = "x must be the machine axis: say which column is which (--columns), or name the axis (--axis)"
 """what may be wrong with a cloud near which no blade is found"""
 GROSS_DEVIATION = (1.5e-3, 5e-3)
-"""mean and largest deviation, of the chord, beyond which no match is trusted without a tolerance. A mean of 0.15 % on
-both sides of a turbine's throat of 0.3 chords changes it by 1 %; 0.5 % is half the radius of a usual leading edge.
-So well are ends to be known where nothing is asked, and edges (5e-3), whose sharp tips move by more than sides."""
+"""mean and largest deviation, of the chord, beyond which no match is trusted without a tolerance; so well are ends, and
+edges, to be known where nothing is asked (design/matching_constants.md)"""
 SHOWN_SIDE = 2.4e-3
-"""how well a place of the sides between the edges is to be known where nothing is asked, of the chord: in the middle
-between the bands of sides that are met, 1.7e-3 at most, and those of sides that are off between their points, 3.4e-3 at
-least (design/matching.md)"""
+"""how well sides between the edges are to be known where nothing is asked, of the chord (design/matching.md)"""
 SHARED_VARIANCE = 0.5
-"""share of the variance that neighbours have in common from which more of a deviation is the shape's than noise: half
-and twice change notes only (design/matching_constants.md)"""
+"""share of variance common to neighbours above which a deviation is the shape's (design/matching_constants.md)"""
 LARGEST_OUTLIER_SHARE = 0.1
-"""share of the points that may be outliers: with more, the cloud is not one blade of the family; half and twice change
-nothing measured (design/matching_constants.md)"""
+"""share of the points that may be outliers; more are not one blade of the family (design/matching_constants.md)"""
 LISTED_NAMES = 5
 """parameters that a note lists by name"""
 SIDES = ("upper", "lower")
 """names of the sides, by their number in footpoints"""
 HALF_BLADE_WIDTH = 0.5
-"""width of the blade where its points end, of its thickest, from which it is half a blade: half and twice change
-nothing measured (design/matching_constants.md)"""
+"""width where the points end, of the blade's thickest, from which it is half a blade (design/matching_constants.md)"""
 SHEET_THICKNESS = 3e-3
-"""thickness, of the chord, below which no blade is. Two sides laid through one side of Aachen's stator were 0.2 % of
-the chord apart; the thinnest example, an impeller, has 1.3 %. Half and twice change nothing measured
-(design/matching_constants.md)."""
+"""thickness, of the chord, below which no blade is (design/matching_constants.md)"""
 MIN_SIDE_SHARE = 0.1
-"""share of the points between the edges below which a side is not shown: half and twice change nothing measured
-(design/matching_constants.md)"""
+"""share of the points between the edges below which a side is not shown (design/matching_constants.md)"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,22 +101,22 @@ class Acceptance:
         yield from coarse
         if self._nothing_asked:
             yield from self._too_many_parameters()
-        if self._nothing_asked and not coarse:
-            # what a match that is not found misses widens its bands
-            yield from self._not_shown()
+            if not coarse:
+                # what a match that is not found misses widens its bands
+                yield from self._not_shown()
         if not self.target.structured:
-            yield from (f"{each}: is it a whole blade? Give points there, or a start" for each in self._bare_stretches)
+            yield from (f"{each}: is it a whole blade? Give points there, or a start" for each in self._long_gaps())
         yield from self._partly_shown()
 
     def notes(self) -> Iterator[str]:
         """What else there is to know, each a sentence."""
         measurement, chord = self.measurement, self.match.model.chord
         if np.any(measurement.faced):
-            faced = f"{np.count_nonzero(measurement.faced)} of {measurement.outliers} outliers"
-            yield f"{faced} lie on the end faces: the sides are met without them"
+            faced, outliers = np.count_nonzero(measurement.faced), np.count_nonzero(measurement.outliers)
+            yield f"{faced} of {outliers} outliers lie on the end faces: the sides are met without them"
         if self.target.open and EXACT * chord < self._largest <= NEAR_EVERYWHERE * chord and self._is_systematic:
             yield f"near enough to make, but {self._not_found}"
-        if measurement.dimension == 3 and self._mean > GROSS_DEVIATION[0] * chord:
+        if measurement.footpoints.points.shape[1] == 3 and self._mean > GROSS_DEVIATION[0] * chord:
             yield f"a blade in other axes is met no nearer than this: {AXES_HINT}"
         for name, (_, share) in self._uncovered_edges.items():
             if share <= HALF_BLADE_WIDTH:
@@ -138,7 +129,7 @@ class Acceptance:
         if self._nothing_asked:
             yield from self._bare_parts()
         if self.target.structured:
-            yield from self._bare_stretches
+            yield from self._long_gaps()
         if self._loose_ends:
             yield self._where_it_ends(self._loose_ends)
         estimates = self.statistics.estimates
@@ -170,15 +161,6 @@ class Acceptance:
     def _bands(self) -> ShapeBands:
         return shape_bands(self.match)
 
-    @cached_property
-    def _bare_stretches(self) -> list[str]:
-        """Long gaps between the points around the blade, each a sentence."""
-        chord = self.match.model.chord
-        return [
-            f"no point shows the {place}: {self._length(way, 3)} without one, {100 * way / chord:.2g} % of the chord"
-            for way, place in bare_stretches(self.match)
-        ]
-
     @property
     def _mean(self) -> float:
         return float(np.mean(self.measurement.distances[self.measurement.inliers]))
@@ -194,7 +176,7 @@ class Acceptance:
         """Outliers that are too many, too many beside each other, or where chance does not put them."""
         measurement, chord = self.measurement, self.match.model.chord
         distances, count = measurement.distances, len(measurement.distances)
-        outliers = ~measurement.inliers & ~measurement.faced & (measurement.set_aside == "")
+        outliers = measurement.outliers & ~measurement.faced
         off = int(np.count_nonzero(outliers))
         if off > LARGEST_OUTLIER_SHARE * count:
             yield f"{off} of {count} points lie off the blade: is it one blade, and of this family?"
@@ -276,12 +258,10 @@ class Acceptance:
         bands = self._bands
         known, found = bands.half_widths <= GROSS_DEVIATION[1] * self.match.model.chord, {}
         for name, past in past_points(self.match, bands.side, bands.u, bands.v).items():
-            if name in EDGE_PARAMETERS:
-                away = np.abs(bands.u - EDGE_PARAMETERS[name])
-                found[name] = past & (away < BETWEEN_EDGES) & np.any(known[away == 0.0])
-            else:
-                away = np.abs(bands.v - END_PARAMETERS[name])
-                found[name] = past & known & (away < 0.5) & np.any(known[away == 0.0])
+            at, end = (bands.u, EDGE_PARAMETERS[name]) if name in EDGE_PARAMETERS else (bands.v, END_PARAMETERS[name])
+            away = np.abs(at - end)
+            near = away < BETWEEN_EDGES if name in EDGE_PARAMETERS else known & (away < 0.5)
+            found[name] = past & near & np.any(known[away == 0.0])
         return found
 
     def _not_shown(self) -> Iterator[str]:
@@ -291,7 +271,7 @@ class Acceptance:
         limits = np.where(np.any(list(self._bare.values()), axis=0), np.inf, np.maximum(self._limits, one_point))
         worst = int(np.argmax(bands.half_widths / limits))
         if bands.half_widths[worst] > limits[worst]:
-            along = "" if self.measurement.dimension == 2 else f", v = {bands.v[worst]:.2g}"
+            along = f", v = {bands.v[worst]:.2g}" if self.measurement.footpoints.points.shape[1] == 3 else ""
             yield (
                 f"the points do not show the {SIDES[bands.side[worst]]} side at u = {bands.u[worst]:.2g}{along}: it is "
                 f"known there to {self._length(bands.half_widths[worst])} either way (95 %), and "
@@ -322,6 +302,12 @@ class Acceptance:
                     f"there to {self._length(np.max(bands.half_widths[rows]))} either way (95 %)"
                 )
 
+    def _long_gaps(self) -> Iterator[str]:
+        """Long gaps between the points around the blade."""
+        for way, place in bare_stretches(self.match):
+            share = 100 * way / self.match.model.chord
+            yield f"no point shows the {place}: {self._length(way, 3)} without one, {share:.2g} % of the chord"
+
     def _partly_shown(self) -> Iterator[str]:
         """Why the points must be those of a part of a blade only, if anything shows it."""
         feet, thickness = self.match.state.footpoints, least_thickness(self.match)
@@ -342,10 +328,7 @@ class Acceptance:
 
 
 def _largest_group(feet: Footpoints, outliers: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """The largest group of outliers (n,) beside each other, where there may be one that is too large.
-
-    Outliers scatter; a part of the blade that is not found does not.
-    """
+    """The largest group of outliers (n,) beside each other, where there may be one too large: strewn ones scatter."""
     points, rows = feet.points + feet.miss, np.flatnonzero(outliers)
     if len(rows) <= LARGEST_GROUP * len(points):
         return rows[:0]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import least_squares
 from scipy.special import fdtri, ndtri
 
@@ -20,47 +20,39 @@ from bladewright.numerics.robust import DEVIATION_OVER_MEDIAN
 from bladewright.nurbs.basis import Reals
 
 ROW_SPREAD_OF_NOISE = 2.0
-"""spread of the points at an end, of the cloud's noise, from which they stand in no row: a noisy row is a row all the
-same. Half and twice change nothing measured (design/matching_constants.md)."""
+"""spread of points at an end, of the cloud's noise, from which they stand in no row (design/matching_constants.md)"""
 WIDTH_OVER_SPREAD = 4.0 / DEVIATION_OVER_MEDIAN
 """width of evenly scattered values over the deviation that the median of their distances from the middle tells"""
 PARTS = 5
-"""parts of the span, and of the chord, in each of which both sides are looked at. Half and twice change only how many
-long gaps are said (design/matching_constants.md)."""
+"""parts of the span, and of the chord, in each of which both sides are looked at (design/matching_constants.md)"""
 COVERED_SHARE = 0.5
-"""share of these parts that must have a point on the edge's arc; below it the edge is uncovered. Half changes nothing,
-with twice a sharp edge is said to have no point (design/matching_constants.md)."""
+"""share of these parts that must have a point on the edge's arc, or it is uncovered (design/matching_constants.md)"""
 BARE_SHARE, BARE_GAPS = 0.1, 5.0
-"""gap between points around a section, of the chord, from which a blade is not shown there if it is so many usual ones:
-whole clouds have 0.024 at most, or 2.9 usual gaps, a tenth of one side left out 0.12 and 13 (design/matching.md)"""
+"""gap between points around a section, of the chord, from which a blade is not shown there if it is so many usual ones
+(design/matching.md, design/matching_constants.md)"""
 FREE_GAP = 0.1
 """share of such a gap within which no point of other parts of the span may lie beside its middle, as rows of points run
-across the blade's lines: of APU's rows 0.036 at most, 0.18 where its corner stood out (design/matching.md)"""
+across the blade's lines (design/matching.md)"""
 AT_EDGE = 0.01
-"""share of such a gap within which an edge is at its end: half and twice change nothing measured
-(design/matching_constants.md)"""
+"""share of such a gap within which an edge is at its end (design/matching_constants.md)"""
 WAY_SAMPLES = 401
-"""places along a side between which its length is taken as straight: half and twice change nothing measured
-(design/matching_constants.md)"""
+"""places along a side between which its length is taken as straight (design/matching_constants.md)"""
 THICKNESS_SAMPLES = 25
-"""places along a section among which it is thickest: half and twice change nothing (design/matching_constants.md)"""
+"""places along a section among which it is thickest (design/matching_constants.md)"""
 REACH = 2.0
-"""how far from the end of an edge points are compared, in widths of the blade at `INSIDE`: a face and as much of both
-sides, which are straight so far [-]; half changes nothing of eight made edges, with twice a blunt one is not seen
-(tests/fitting/test_foreign_edges.py)"""
+"""how far from the end of an edge points are compared, in widths of the blade at `INSIDE`: sides are straight so far;
+with twice a blunt edge is not seen (tests/fitting/test_foreign_edges.py)"""
 INSIDE = 0.05
-"""distance from an edge, in u, at which the sides show width and direction across it [-]; half and twice change nothing
-measured (design/matching_constants.md)."""
+"""distance from an edge, in u, at which the sides show width and direction across it (design/matching_constants.md)"""
 SHARES = (0.9, 0.5, 0.1)
-"""widths from which a face and an arc are fitted, of the half height of their points: half and twice change nothing
-measured (design/matching_constants.md)."""
+"""first widths of fitted faces and arcs, of the half height of their points (design/matching_constants.md)"""
 PLACES = {2: (41, 1), 3: (21, 21)}
-"""places along each side and along the span, closer at edges and ends, at which it is asked how well the shape is
-known, by dimension; they bound the time. But for the ends and the middle they lie between even rows of points"""
+"""places along each side and the span, by dimension, where it is asked how well the shape is known: they bound time,
+and but for the ends and the middle lie between even rows of points"""
 CONFIDENCE = 0.95
-"""probability with which bands and ends are as near as is said [-]. It is that of Neyman 1937."""
+"""probability with which bands and ends are as near as is said (Neyman 1937)"""
 NORMAL_95 = float(ndtri((1.0 + CONFIDENCE) / 2.0))
-"""standard deviations to either side within which 95 % of normal errors are [-]"""
+"""standard deviations to either side within which 95 % of normal errors are"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -125,9 +117,7 @@ def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:
         if len(nearest) == 0 or not match.problem.cloud_residuals.overhang.looks_at(end):
             continue
         side, u, v = footpoints.side[nearest], footpoints.u[nearest], footpoints.v[nearest]
-        near_end, tip, across = (
-            _places(sides, *at) for at in ((side, u, v), (side, np.full(len(u), end), v), (1 - side, u, v))
-        )
+        near_end, tip, across = (_places(sides, *at) for at in ((side, u, v), (side, end, v), (1 - side, u, v)))
         width = np.sqrt(np.sum((near_end - across) ** 2, axis=-1))
         if np.mean(np.sqrt(np.sum((near_end - tip) ** 2, axis=-1)) <= width) < COVERED_SHARE:
             wide = float(np.median(width))
@@ -149,8 +139,7 @@ def bare_stretches(match: Match) -> list[tuple[float, str]]:
     for number in np.unique(part):
         own = feet.part(part == number)
         v = float(np.mean(own.v))
-        places = (_places(sides, np.full(len(u), side), u, np.full(len(u), v)) for side in (0, 1))
-        upper, lower = (cumulative_length(each) for each in places)
+        upper, lower = (cumulative_length(_places(sides, side, u, v)) for side in (0, 1))
         whole = upper[-1] + lower[-1]
         ways = np.sort(np.where(own.side == 0, np.interp(own.u, u, upper), whole - np.interp(own.u, u, lower)))
         gaps = np.diff(ways, append=ways[0] + whole)
@@ -164,7 +153,7 @@ def bare_stretches(match: Match) -> list[tuple[float, str]]:
         side = int(middle > upper[-1])
         at = np.interp(whole - middle if side else middle, (upper, lower)[side], u)
         beside = feet.points if place in EDGE_PARAMETERS else feet.points[feet.side == side]
-        aside = beside - _places(sides, np.array([side]), np.array([at]), np.array([v]))
+        aside = beside - _places(sides, side, at, v)
         if np.min(np.sum(aside**2, axis=-1), initial=np.inf) < (FREE_GAP * (last - first)) ** 2:
             continue
         if place not in EDGE_PARAMETERS or match.problem.cloud_residuals.overhang.looks_at(EDGE_PARAMETERS[place]):
@@ -236,11 +225,13 @@ def least_thickness(match: Match) -> float:
 
 def _thickness(sides: Sequence[Side], v: float) -> float:
     u = np.linspace(0.0, 1.0, THICKNESS_SAMPLES)
-    upper, lower = (_places(sides, np.full(len(u), side), u, np.full(len(u), v)) for side in (0, 1))
+    upper, lower = (_places(sides, side, u, v) for side in (0, 1))
     return float(np.sqrt(np.max(np.sum((upper - lower) ** 2, axis=-1))))
 
 
-def _places(sides: Sequence[Side], side: NDArray[np.intp], u: Reals, v: Reals) -> Reals:
+def _places(sides: Sequence[Side], side: ArrayLike, u: ArrayLike, v: ArrayLike) -> Reals:
+    """Places (n, d) on the sides at parameters, each (n,) or one for all."""
+    side, u, v = (np.atleast_1d(each) for each in np.broadcast_arrays(side, u, v))
     none = np.zeros((len(u), np.real(sides[0].control_points).shape[-1]))
     return footpoints_at(none, sides, side, u, v).points
 
@@ -257,10 +248,9 @@ def foreign_edges(match: Match) -> dict[str, float]:
     points, feet = match.problem.cloud_residuals.points[match.rows], match.state.footpoints.part(match.rows)
     sides, found = match.state.shape.sides, {}
     for name, end in EDGE_PARAMETERS.items():
-        upper_side, at_end = np.zeros(len(points), dtype=np.intp), np.full(len(points), end)
-        edge = footpoints_at(points, sides, upper_side, at_end, feet.v)
-        inside = np.abs(at_end - INSIDE)
-        across = _places(sides, upper_side, inside, feet.v) - _places(sides, 1 - upper_side, inside, feet.v)
+        edge = footpoints_at(points, sides, np.zeros(len(points), dtype=np.intp), np.full(len(points), end), feet.v)
+        inside = abs(end - INSIDE)
+        across = _places(sides, 0, inside, feet.v) - _places(sides, 1, inside, feet.v)
         across -= np.sum(across * edge.normals, axis=-1)[:, None] * edge.normals
         wide = np.sqrt(np.sum(across**2, axis=-1))
         along, height = (np.sum(edge.miss * each, axis=-1) for each in (edge.normals, across / wide[:, None]))

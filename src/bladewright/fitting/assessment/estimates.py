@@ -15,20 +15,17 @@ from bladewright.fitting.matching.search import Match
 from bladewright.nurbs.basis import Reals
 
 IDENTIFIED_SPREAD = 0.3
-"""standard deviation, of a parameter's own scale, below which the cloud determines it. Its 95 % interval is then about
-one scale wide (design/matching_constants.md)."""
+"""standard deviation, of a parameter's own scale, below which the cloud determines it: its 95 % interval is then about
+one scale wide (design/matching_constants.md)"""
 CORRELATED_POINTS, CORRELATED_NEIGHBOURS = 2000, 512
-"""points whose residuals are compared with those of their neighbours, and neighbours at most; they bound the time: half
-and twice change nothing (design/matching_constants.md)."""
+"""points that are compared with neighbours, and these at most; they bound the time (design/matching_constants.md)"""
 FIRST_NEIGHBOURS, BY_CHANCE = 4, 2.0
 """neighbours that are compared first, twice as many each time, and standard errors that a correlation has by chance: 95
 in 100 are lower (Bartlett 1946)"""
 LARGEST_CONDITION = 1e7
-"""condition of the derivatives by the scaled parameters from which one of them is not determined: half and twice change
-nothing measured (design/matching_constants.md)"""
+"""condition of the scaled derivatives from which a parameter is not determined (design/matching_constants.md)"""
 AT_BOUND = 1e-3
-"""distance from a bound, of a parameter's scale, within which it lies on the bound. Half and twice change nothing
-measured (design/matching_constants.md)."""
+"""distance from a bound, of a parameter's scale, within which it lies on the bound (design/matching_constants.md)"""
 
 
 @dataclass(frozen=True, kw_only=True)

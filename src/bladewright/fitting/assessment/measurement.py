@@ -1,6 +1,6 @@
 """The final measurement of a match: every point of the cloud against what the design builds."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,7 @@ from bladewright.blade.native.cut_lines import in_meridian
 from bladewright.fitting.free_parameters import EDGES
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS, WallPoints, blade_ends_of
 from bladewright.fitting.matching.footpoints import EDGE_PARAMETERS, Footpoints, nearest_footpoints
-from bladewright.fitting.matching.noise import EDGE_BAND, NoiseEstimate, noise_of
+from bladewright.fitting.matching.noise import EDGE_BAND, noise_of
 from bladewright.fitting.models.blunt_edges import blunt_edges_of, on_sides, sides_of
 from bladewright.fitting.models.model import ModelShape
 from bladewright.numerics.robust import median_deviation
@@ -35,7 +35,10 @@ class Measurement:
     footpoints: Footpoints
     deviations: Reals
     regions: NDArray[np.str_]
-    noise_estimate: NoiseEstimate
+    inliers: NDArray[np.bool_]
+    """(n,) whether a point takes part; the others are outliers, or set aside"""
+    noise: float
+    """standard deviation of the cloud's own noise [m]"""
     faced: NDArray[np.bool_]
     """(n,) whether an outlier lies on an end face, as the points of a solid's faces do"""
     set_aside: NDArray[np.str_]
@@ -47,19 +50,9 @@ class Measurement:
         return np.sqrt(self.deviations**2)
 
     @property
-    def inliers(self) -> NDArray[np.bool_]:
-        """(n,) whether a point takes part; the others are outliers, or set aside."""
-        return self.noise_estimate.inliers
-
-    @property
-    def outliers(self) -> int:
-        """Number of the points that are outliers."""
-        return int(np.count_nonzero(~self.inliers & (self.set_aside == "")))
-
-    @property
-    def dimension(self) -> int:
-        """2 for points of a section, 3 for those of a blade."""
-        return int(self.footpoints.points.shape[1])
+    def outliers(self) -> NDArray[np.bool_]:
+        """(n,) whether a point is an outlier."""
+        return np.asarray(~self.inliers & (self.set_aside == ""))
 
 
 def measured(
@@ -98,11 +91,10 @@ def measured(
     shape = ModelShape(design=None, sides=sides, exact=exact)
     on_end_face = blade_ends_of(points, footpoints, shape, set_aside == "").on_end_face
     deviations = np.where(footpoints.heights < 0.0, -1.0, 1.0) * off
-    places = np.array(["upper", "lower"], dtype="<U20")[footpoints.side]
     near_edges = [footpoints.u < EDGE_BAND, footpoints.u > 1.0 - EDGE_BAND]
     footpoints, on_face = on_sides(footpoints, blunt_edges_of(built))
-    places = np.select([on_face < 0, on_face > 0], EDGES, places)
-    places = np.where(set_aside == "", places, set_aside)
+    on_side = np.where(footpoints.side == 0, "upper", "lower")
+    places = np.select([set_aside != "", on_face < 0, on_face > 0], [set_aside, *EDGES], on_side)
     past_end = np.abs(np.sum(footpoints.miss * footpoints.beyond, axis=1)) > np.abs(footpoints.heights)
     regions = np.select([past_end, *near_edges], ["ends", *EDGE_PARAMETERS], "sides")
     if isinstance(built, Blade):
@@ -117,7 +109,8 @@ def measured(
         footpoints=footpoints,
         deviations=deviations,
         regions=regions,
-        noise_estimate=replace(noise_estimate, inliers=inliers),
+        inliers=inliers,
+        noise=noise_estimate.noise,
         # points of end faces, few and far inside the sides, are outliers to these
         faced=on_end_face & ~inliers & (set_aside == ""),
         set_aside=set_aside,

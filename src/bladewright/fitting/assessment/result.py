@@ -259,20 +259,16 @@ class Fit(FrozenRecord, Shown):
             f"  {tolerance}noise of the cloud {noise}, chord {chord}",
             f"  {_number_of(len(self.cloud), 'point')}, {outliers}",
         ]
-        set_aside = [
-            f"{each.count} on the {kind} (up to {with_unit(design, each.maximum)} away)"
-            for kind, each in self.by_kind_set_aside.items()
-        ]
-        if set_aside:
-            lines.append(f"  set aside: {', '.join(set_aside)}")
+        if self.by_kind_set_aside:
+            kinds = self.by_kind_set_aside.items()
+            of_kinds = (f"{of.count} on the {kind} (up to {with_unit(design, of.maximum)} away)" for kind, of in kinds)
+            lines.append(f"  set aside: {', '.join(of_kinds)}")
         if self.motion is not None:
             cosine = (np.trace(self.motion.rotation) - (len(self.motion.rotation) - 2)) / 2.0
             angle = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
             shift = ", ".join(in_unit(design, each, 6) for each in self.motion.translation)
-            lines.append(
-                f"  moved to the machine's axes: turned by {angle:.6g} deg, then shifted by ({shift}) "
-                f"{design.length_unit}"  # type: ignore[attr-defined]
-            )
+            unit = unit_of_lengths(design)
+            lines.append(f"  moved to the machine's axes: turned by {angle:.6g} deg, then shifted by ({shift}) {unit}")
         if self.extrema:
             counts = ", ".join(f"{number} on the {name} side" for name, number in self.extrema.items())
             lines.append(f"  extrema of curvature: {counts}")

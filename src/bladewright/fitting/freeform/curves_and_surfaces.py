@@ -15,7 +15,7 @@ from scipy.spatial.distance import cdist
 from bladewright.errors import FitError, GeometryError
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.freeform.fits import FreeformFit, Request
-from bladewright.fitting.freeform.net import DIRECTIONS, empty_net, matched_within, net_of
+from bladewright.fitting.freeform.net import DIRECTIONS, first_net, matched_within, net_of
 from bladewright.numerics.elementary import cumulative_length
 from bladewright.numerics.single_thread import single_threaded
 from bladewright.nurbs.basis import Reals
@@ -25,11 +25,9 @@ from bladewright.nurbs.domain import extended, reparametrised
 from bladewright.nurbs.surface import Surface
 
 GRID_CELLS = 150
-"""cells along the extent of the points in which neighbours become one, so that noise does not fold the path
-(design/freeform.md)"""
+"""cells along the extent in which neighbours become one, so that noise does not fold the path (design/freeform.md)"""
 MOST_CELLS = 1500
-"""cells of which all distances are compared; it bounds time and memory: half and twice change nothing
-(design/matching_constants.md)."""
+"""cells of which all distances are compared; it bounds time and memory (design/matching_constants.md)"""
 MARGIN = 0.05
 """length, of the domain, by which the surface is continued past its edges while it moves (design/freeform.md)"""
 
@@ -87,8 +85,7 @@ def fit_curve(
     if start is None:
         shares = sites_along(scaled, closed=closed)
         own = None if knots is None else (knots,)
-        net = empty_net((degree,), (control_points,), own, weights, scaled.shape[1], closed=closed)
-        net = net.through(scaled, shares[:, None])
+        net = first_net(scaled, shares[:, None], (degree,), (control_points,), own, weights, closed=closed)
     else:
         net = net_of(replace(start, control_points=request.scaled(start.control_points)), closed=closed)
         shares = net.nearest(scaled)[:, 0]
@@ -107,9 +104,8 @@ def fit_curve(
 def sites_along(points: Reals, *, closed: bool) -> Reals:
     """Rough places (n,) in [0, 1] of points (n, d) along a curve, by the length of a path through them.
 
-    The path is the list of points where that is an order already. Otherwise it is the longest one in the minimum
-    spanning tree of the points, thinned to a grid: right where the curve keeps away from itself by more than its
-    points are apart. A closed curve is opened at the widest gap.
+    The path is the list of points, or where that is no order the longest one in their minimum spanning tree. A closed
+    curve is opened at the widest gap.
     """
     if _in_order(points):
         sites = cumulative_length(np.concatenate([points, points[:1]]) if closed else points)
@@ -204,7 +200,7 @@ def fit_surface(
     scaled = request.scaled(request.points)
     if start is None:
         shares = _rectangle(scaled)
-        net = empty_net(degrees, control_points, knots, weights, 3).through(scaled, shares)
+        net = first_net(scaled, shares, degrees, control_points, knots, weights)
         if boundary == "corners":
             corners = [np.argmin(np.sum((shares - corner) ** 2, axis=1)) for corner in np.ndindex(2, 2)]
             net.points[~replace(net, boundary="corners").free] = scaled[corners]

@@ -21,21 +21,17 @@ from bladewright.nurbs.blossom import knot_change
 from bladewright.nurbs.closest import Descents, Places
 from bladewright.nurbs.collocation import collocation
 from bladewright.nurbs.curve import Curve
-from bladewright.nurbs.refine import Direction, inserted
+from bladewright.nurbs.refine import Direction, direction_of, inserted
 from bladewright.nurbs.surface import Surface
 
 TENSION = 0.01
-"""weight of squared first derivatives, of that of squared second ones: with none, surfaces swing twice as far past
-their points, with ten times as much their corners are cut (design/freeform.md)"""
+"""weight of squared first derivatives, of that of squared second ones (design/freeform.md)"""
 LAST_STEP = 1e-10
-"""last step of a descent, in the parameters of a patch: distances of exact points are exact to it
-(design/freeform.md)"""
+"""last step of a descent, in the parameters of a patch: exact points are met to it (design/freeform.md)"""
 KNOT_ROUNDS = 25
-"""times that knots are added at most; it bounds the time: half and twice change nothing
-(design/matching_constants.md)."""
+"""times that knots are added at most; it bounds the time (design/matching_constants.md)"""
 NOISE_RATIO = 1.25
-"""root mean square of a knot span's distances, of the noise, up to which they are noise: three standard errors of the
-root mean square of 70 distances (design/freeform.md)"""
+"""root mean square of a knot span's distances, of the noise, up to which they are noise (design/freeform.md)"""
 DIRECTIONS: tuple[Direction, Direction] = ("u", "v")
 """of a surface; a curve has the first"""
 
@@ -204,14 +200,6 @@ class Net(Shape):
         slopes = np.kron(root[:, self.free], np.eye(self.points.shape[1]))
         return (root @ self.points).ravel(), np.pad(slopes, ((0, 0), (0, self.gauge.shape[1])))
 
-    def through(self, points: Reals, shares: Reals) -> Net:
-        """The net nearest to points (m, d) at shares (m, k) of the domain, and a little stiff."""
-        low, high = self.domain
-        root = np.sqrt(STIFFNESSES[1] * len(points)) * self.bending_root
-        rows = np.concatenate([self.basis(low + (high - low) * shares), root])
-        sides = np.concatenate([points, np.zeros((len(root), points.shape[1]))])
-        return replace(self, points=np.linalg.lstsq(rows, sides, rcond=None)[0])
-
     def refined(self, knots: Sequence[float], direction: Direction) -> Net:
         """The same shape with further knots."""
         net = net_of(inserted(self.shape, knots, direction), closed=self.closed)
@@ -220,11 +208,10 @@ class Net(Shape):
 
 def net_of(shape: Curve | Surface, *, closed: bool = False) -> Net:
     """A curve or surface as a net; of a closed curve the nearest on its distinct knots."""
-    if isinstance(shape, Curve):
-        degrees: tuple[int, ...] = (shape.degree,)
-        knots: tuple[Reals, ...] = (np.pad(breaks(shape.knots), shape.degree, "edge") if closed else shape.knots,)
-    else:
-        degrees, knots = (shape.degree_u, shape.degree_v), (shape.knots_u, shape.knots_v)
+    along = [direction_of(shape, each) for each in DIRECTIONS[: np.ndim(shape.control_points) - 1]]
+    knots, degrees = tuple(own for own, _ in along), tuple(degree for _, degree in along)
+    if closed:
+        knots = (np.pad(breaks(knots[0]), degrees[0], "edge"),)
     points = shape.control_points.reshape(-1, shape.control_points.shape[-1])
     weights = np.ones(len(points)) if shape.weights is None else shape.weights.ravel()
     net = Net(knots=knots, degrees=degrees, points=points, log_weights=np.log(weights), closed=closed)
@@ -235,16 +222,20 @@ def net_of(shape: Curve | Surface, *, closed: bool = False) -> Net:
     return net
 
 
-def empty_net(
+def first_net(
+    points: Reals,
+    shares: Reals,
     degrees: tuple[int, ...],
     counts: tuple[int, ...],
     knots: tuple[ArrayLike, ...] | None,
     weights: str | ArrayLike,
-    dimension: int,
     *,
     closed: bool = False,
 ) -> Net:
-    """A net whose control points are all zero, on uniform or given knots; raises FitError."""
+    """The net, a little stiff, nearest to points (m, d) at shares (m, k) of its domain; raises FitError.
+
+    Its knots are uniform or given.
+    """
     if knots is not None:
         ends = (1,) if closed else tuple(degree + 1 for degree in degrees)
         counts = tuple(len(np.atleast_1d(own)) - end for own, end in zip(knots, ends, strict=True))
@@ -266,8 +257,12 @@ def empty_net(
         if given.shape != counts or not (given > 0.0).all():
             raise FitError(f"weights of shape {given.shape} were given: positive ones of shape {counts} are needed")
         logs = np.log(given)
-    points = np.zeros((logs.size, dimension))
-    return Net(knots=tuple(own), degrees=degrees, points=points, log_weights=logs.ravel(), closed=closed)
+    none = np.zeros((logs.size, points.shape[1]))
+    net = Net(knots=tuple(own), degrees=degrees, points=none, log_weights=logs.ravel(), closed=closed)
+    low, high = net.domain
+    root = np.sqrt(STIFFNESSES[1] * len(points)) * net.bending_root
+    rows = np.concatenate([net.basis(low + (high - low) * shares), root])
+    return replace(net, points=np.linalg.lstsq(rows, np.concatenate([points, none]), rcond=None)[0])
 
 
 def _products(knots: Reals, degree: int) -> list[Reals]:

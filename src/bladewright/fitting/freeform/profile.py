@@ -28,16 +28,13 @@ from bladewright.nurbs.refine import inserted
 DEGREE = 3
 """degree of camber and thickness (the source's section 3.1)"""
 THIRD_ABSCISSA = 0.0625
-"""abscissa of the third control point of the thickness, of the chord (the source's section 4.2)
-(design/matching_constants.md)"""
+"""abscissa of the third control point of the thickness, of the chord (the source's section 4.2)"""
 SITES = np.linspace(0.0, 1.0, 201)
 """parameters of a side where searches for nearest places start, and of the camber between which abscissae are sought"""
 NOISE_MAXIMUM = 3.0
-"""standard deviations of the points' noise that the largest of some hundred distances has by chance
-(design/freeform.md)"""
+"""standard deviations of the noise that the largest of some hundred distances has by chance (design/freeform.md)"""
 MOST_GROWTHS = 8
-"""times that control points are added at most; it bounds the time: half and twice change nothing
-(design/matching_constants.md)."""
+"""times that control points are added at most; it bounds the time (design/matching_constants.md)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -24,18 +24,16 @@ from bladewright.nurbs.basis import Reals
 STIFFNESSES = (1e-4, 1e-6, 1e-8, 1e-10)
 """weights of the bending, in extents of the points squared, in turn (design/freeform.md)"""
 LAST, ROUGH = (200, 1e-5), (20, 1e-3)
-"""evaluations at most and predicted relative reduction of the cost at which a descent ends: a last one, whose root mean
-square is then within 0.005 % of what the next step would leave, and one on the way (design/freeform.md)"""
+"""evaluations at most and predicted relative reduction of the cost at which a descent ends: a last one, and one on the
+way (design/freeform.md)"""
 OUTLYING_NOISE = 4.5
-"""standard deviations of the noise from which a point is an outlier: one good point in 150,000 is dropped
-(design/freeform.md)"""
+"""standard deviations of the noise from which a point is an outlier: 1 good one of 150,000 is (design/freeform.md)"""
 REWEIGHTINGS = 5
 """times that the weights of least distances are found anew (design/freeform.md)"""
 EXACT = 1e-10
 """distance, of the extent, that is rounding of the places (design/freeform.md)"""
 DETERMINED = 1e-6
-"""singular value, of the largest, above which the points determine its direction: what is less changes the cost by less
-than rounding does (design/freeform.md)"""
+"""singular value, of the largest, above which the points determine its direction (design/freeform.md)"""
 
 
 class Shape(ABC):
@@ -179,11 +177,8 @@ class ShapeMatch(Generic[S]):
         """The figures of a fit, in the unit of the points that were given."""
         rank, unknowns = self.rank, len(self.singular_values)
         if rank < unknowns:
-            open_note = (
-                f"the points determine {rank} of {unknowns} directions of the unknowns: the others bend the shape as "
-                "little as they can"
-            )
-            notes = (*notes, open_note)
+            known = f"the points determine {rank} of {unknowns} directions of the unknowns"
+            notes = (*notes, f"{known}: the others bend the shape as little as they can")
         return {
             "distances": self.distances * request.extent,
             "inliers": self.inliers,
