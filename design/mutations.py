@@ -148,9 +148,9 @@ MUTATIONS = (
     Mutation(
         "fitting",
         "the noise of a cloud is the median of its deviations, not its standard deviation",
-        "fitting/matching/noise.py",
-        "* float(np.median(np.abs(rest)))",
-        "* 0.6745 * float(np.median(np.abs(rest)))",
+        "numerics/robust.py",
+        "DEVIATION_OVER_MEDIAN = 1.4826",
+        "DEVIATION_OVER_MEDIAN = 1.0",
         ("tests/fitting/test_noise.py",),
     ),
     Mutation(

@@ -7,6 +7,7 @@ import key_pictures
 import part_key_pictures
 
 import bladewright as bw
+from bladewright.designs import Design
 from bladewright.files.examples import example_text, examples
 from bladewright.files.families import FAMILIES
 from bladewright.files.keys import tables
@@ -82,17 +83,21 @@ def python_reference():
     lines = ["# Python reference", "", "```{eval-rst}"]
     for name in dict.fromkeys([*order, *public]):
         if name not in modules:
-            own = getattr(bw, name)
-            kind = "autoclass" if isinstance(own, type) else "autofunction"
-            lines += [f".. {kind}:: bladewright.{name}", *(["   :members:"] if kind == "autoclass" else []), ""]
+            lines += _reference(f"bladewright.{name}", getattr(bw, name))
     for module in modules:
         room = getattr(bw, module)
         for name, own in vars(room).items():
             if callable(own) and getattr(own, "__module__", "").startswith(f"{room.__name__}."):
-                members = ["   :members:"] if isinstance(own, type) else []
-                kind = "autoclass" if members else "autofunction"
-                lines += [f".. {kind}:: bladewright.{module}.{name}", *members, ""]
+                lines += _reference(f"bladewright.{module}.{name}", own)
     return [*lines, "```", ""]
+
+
+def _reference(path, own):
+    """A public function, or a class and its members; those that all designs share stand on the pages of keys."""
+    if not isinstance(own, type):
+        return [f".. autofunction:: {path}", ""]
+    inherited = [] if issubclass(own, (Design, Exception)) else ["   :inherited-members:"]
+    return [f".. autoclass:: {path}", "   :members:", *inherited, ""]
 
 
 def write(_app):

@@ -81,7 +81,7 @@ def matched_section(
     tried = compared(task.thinned(TRIAL_POINTS), first_designs(kind, shape, part, header, task))
     structure = None if like is None else structure_of(like)
     off = misfits(tried[:CONSIDERED])
-    promising = [each.design for each, miss in zip(tried, off, strict=False) if miss < PROMISING * off[0]]
+    promising = [each.design for each, miss in zip(tried, off, strict=False) if miss <= PROMISING * off[0]]
     found, reason = nearest(task, promising, target, structure)
     if kind.has_contours and like is None and is_far(found, target):
         outline, note = _through_points(task, kind, tried, header, target, found)
