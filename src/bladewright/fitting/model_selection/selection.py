@@ -22,9 +22,13 @@ from bladewright.fitting.matching.search import (
     searched,
     without_false_outliers,
 )
-from bladewright.fitting.model_selection.clustering import nearest_by_clustering
-from bladewright.fitting.model_selection.edges import from_other_edges, nearest_from_other_edges, with_sharp_edges
 from bladewright.fitting.model_selection.elimination import reweighted
+from bladewright.fitting.model_selection.other_minima import (
+    from_other_edges,
+    nearest_by_clustering,
+    nearest_from_other_edges,
+    with_sharp_edges,
+)
 from bladewright.fitting.model_selection.structure import Structure, reshaped, structure_of
 from bladewright.fitting.model_selection.structure_search import (
     ENOUGH,
