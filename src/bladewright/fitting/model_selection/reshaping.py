@@ -26,8 +26,7 @@ from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNES
 
 FIRST_ANGLES, FIRST_TANGENTS, FIRST_RADII = 4, 3, 2
 """control points along the span of a first blade's angles and position, tangents and radii: free enough to find its
-edges. With half Aachen's stator ends up to 7.4e-4 of the chord off, not 5.8e-4; with twice as many for angles it is not
-found (design/matching_constants.md)."""
+edges (design/matching_constants.md)"""
 FIRST_SECTION = Structure(counts=dict.fromkeys(THICKNESSES, (6, 1)), samples=16)
 """of a section with which a match begins"""
 FIRST_BLADE = Structure(
@@ -40,9 +39,7 @@ FIRST_BLADE = Structure(
     },
     samples=16,
 )
-"""of a twisted and swept blade, with which a match begins: with fewer for angles and tangents, 58 parameters in all, a
-propeller, whose slices are within 2 deg of its metal angles, was searched away from these to 89 deg
-(design/matching.md)"""
+"""of a twisted and swept blade, with which a match begins (design/matching_constants.md)"""
 
 
 def _with_each(structure: Structure, laws: Iterable[ResizableLaw], count: Callable[..., int]) -> Structure:
@@ -54,8 +51,8 @@ def _with_each(structure: Structure, laws: Iterable[ResizableLaw], count: Callab
 def richest(design: Design, *, sampled: bool = False) -> Structure:
     """The structure with all the control points that a match may begin with.
 
-    Where it is to be `sampled`, it adds none along the chord that the design's samples do not determine: further ones
-    lie closer to the edges, where the thickness then has to bend like a nose (design/matching.md).
+    Where it is to be `sampled`, it adds none along the chord that the design's samples do not determine
+    (design/matching.md).
     """
     own = structure_of(design)
 
@@ -73,12 +70,9 @@ def _determined(own: Structure, law: ResizableLaw, place: int) -> int:
 
 
 ROWS_PER_KNOT = 3
-"""rows of points for each inner knot of a law along the span, where Ruppert 2002 has four: with four Rotor 67, whose
-rows lie in 20 parts of the span, does not pass, with as many knots as rows allow a propeller of 21 rows is 3.5e-3 of
-the chord off between them (design/matching.md)"""
+"""rows of points for each inner knot of a law along the span, where Ruppert 2002 has four (design/matching.md)"""
 CHORD_PARTS = 10
-"""parts of each side, along the chord, in each of which rows are counted: with 20 and 40 the rows of five clouds count
-the same within one (design/matching.md)"""
+"""parts of each side, along the chord, in each of which rows are counted (design/matching_constants.md)"""
 
 
 def rows_shown(feet: Footpoints) -> int:
@@ -171,9 +165,8 @@ def wider_structure(
     """A structure with a third as many control points again in every law of a design, and a rich one at least.
 
     Along the span it has no more of them than `rows` of points, and along the chord no more than the design's samples
-    determine, unless it has as many: with four samples more the same laws are another shape, 1e-3 to 3e-3 of the chord
-    off (design/matching.md). Of a structure that is `slim`, which has lost what it does not need, half as many again
-    and no more.
+    determine, unless it has as many (design/matching.md). Of a structure that is `slim`, which has lost what it does
+    not need, half as many again and no more.
     """
     own = structure_of(design)
     least, share = (own, 2) if slim else (richest(design), 3)

@@ -51,8 +51,8 @@ CORNERS_HELD_NOTE = "the radii of the channel's corners are read off the points,
 HELD_NOTE = "the points do not determine {}, which are held where a smooth design has them"
 """note where parameters are held"""
 DETERMINED_MARGIN, MOST_HOLDINGS = 1.5, 3
-"""standard deviations that a determined direction of the parameters has in its own scale at least, more than one as the
-search that follows changes the residuals; and how often parameters are held at most (design/matching_constants.md)."""
+"""standard deviations that a determined direction of the parameters has in its own scale at least, and how often
+parameters are held at most (design/matching_constants.md)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -73,9 +73,9 @@ class RichMatch:
 def selected_match(
     task: Task, first: Design, target: MatchTarget, *, like: Structure | None, guessed: bool
 ) -> tuple[Match, str]:
-    """The match, and why it ends where no target is met.
+    """The match from a first design, a guess or a start, and why it ends where no target is met.
 
-    `first` is a first design, a guess or a start; `like` is the structure of a given design.
+    `like` is the structure of a given design.
     """
     return reduced_match(rich_match(task, first, target, like=like, guessed=guessed), target)
 
