@@ -14,23 +14,21 @@ from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Design, Stations
 from bladewright.errors import FitError
 from bladewright.fitting.free_parameters import EDGES, WALLS, sliding_coordinate
-from bladewright.fitting.model_selection.curves import (
-    FEWEST_ON_WALL,
-    ChannelCurves,
-    CurvePoints,
-    SegmentPoints,
-    WallPoints,
-)
 from bladewright.fitting.model_selection.laws import (
     ALONG_SPAN,
     COMPARED_PLACES,
+    FEWEST_ON_WALL,
     MOST_CHORD,
     ONE,
+    ChannelCurves,
     Counts,
+    CurvePoints,
     HeightsLaw,
     ResizableLaw,
     Row,
+    SegmentPoints,
     SpanLaw,
+    WallPoints,
 )
 from bladewright.fitting.models.sectioned import SINGLE_SECTION
 from bladewright.numerics.elementary import cumulative_length
@@ -54,9 +52,8 @@ MOST_SAMPLES = 60
 POSITIONS = ("leading_edge_theta", "leading_edge_y")
 """fields of the position of the leading edge"""
 RICH_CHORDWISE = {2: 24, 3: 9}
-"""control points along the chord of a rich structure of the unified family, by dimension. Nine have six spans, whose
-knots include those of one, two and three: cubic laws of 4, 5 and 6 control points are special cases of theirs
-(design/matching.md)."""
+"""control points along the chord of a rich structure of the unified family, by dimension: nine hold cubic laws of 4, 5
+and 6 (design/matching.md)"""
 RICH_SPAN = {"thickness": 6, "radius": 4, "": 9}
 """control points along the span of its laws, by what their names say: six hold cubic laws of 4, nine of 4, 5 and 6."""
 RICH_CHANNEL = (9, 9, 6, 6)
