@@ -80,9 +80,8 @@ def rows_shown(feet: Footpoints) -> int:
 
     A spline's control points are determined where each basis function has a place of its own (Schoenberg and Whitney
     1953), but between so few it swings: a cubic one has an inner knot for every few rows, and fewer control points than
-    rows. Rows are counted in parts of the chord, of which the median counts, as the most places that are clearly apart.
-    Rows that lead across the design's lines show more of the span than there are rows: its knots go by the most equal
-    parts of it that all have points.
+    rows, by the median of parts of the chord. Rows that lead across the design's lines show more of the span: knots go
+    by the most equal parts of it that all have points.
     """
     order = 4
     most = ROWS_PER_KNOT * (MOST_SPAN - order)
@@ -115,8 +114,8 @@ def with_feasible_edges(design: Design) -> Design:
         if _has_shape(design):
             break
         ends = tuple(f"{name}[{place}]" for name in THICKNESSES for place in (0, len(getattr(design, name)) - 1))
-        thick = {path: value for path, value in design.parameters().items() if path.startswith(ends)}
-        design = design.changed({path: THINNER_EDGES * value for path, value in thick.items()})
+        values = design.parameters().items()
+        design = design.changed({path: THINNER_EDGES * value for path, value in values if path.startswith(ends)})
     return design
 
 

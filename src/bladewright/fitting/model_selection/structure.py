@@ -109,12 +109,12 @@ def _(part: CurvatureMeanline) -> dict[str, Row]:
 
 @chordwise_rows.register
 def _(part: SuctionPressure) -> dict[str, Row]:
-    heights = {name: getattr(part, f"{name}_heights") for name in ("suction", "pressure")}
-    return {
-        f"{name}_heights": Row(fewest=1, most=MOST_CHORD, held=(2, 2))
-        for name, row in heights.items()
-        if row and not (getattr(part, f"{name}_places") or getattr(part, f"{name}_knots"))
-    }
+    found = {}
+    for side in ("suction", "pressure"):
+        given = getattr(part, f"{side}_places") or getattr(part, f"{side}_knots")
+        if getattr(part, f"{side}_heights") and not given:
+            found[f"{side}_heights"] = Row(fewest=1, most=MOST_CHORD, held=(2, 2))
+    return found
 
 
 @singledispatch
@@ -138,7 +138,7 @@ def _(design: SectionedBlade) -> list[ResizableLaw]:
     for wall in WALLS:
         curve = getattr(design.flow_path, wall)
         if isinstance(curve, ThroughPoints) and len(curve.points) >= FEWEST_ON_WALL:
-            way = cumulative_length(np.real(np.array([tuple(each) for each in curve.points])))
+            way = cumulative_length(np.real(np.array(curve.points)))
             stations = tuple((way / way[-1]).tolist())
             found.append(WallPoints(name=f"flow_path.{wall}", rich=(RICH_CURVE,), axes="xr", stations=stations))
     return found
