@@ -171,7 +171,7 @@ class LinearModel:
             values = nearest.copy()
             values[free] += np.linalg.lstsq(part, prediction.change[law.columns] - shift, rcond=None)[0]
             for place, count in enumerate(counts):
-                for fewer in range(max(law.law.limits()[0][place], count - LARGEST_STEP), count):
+                for fewer in range(max(law.law.fewest[place], count - LARGEST_STEP), count):
                     smaller = (*counts[:place], fewer, *counts[place + 1 :])
                     lost, offset = law.lost(counts, smaller)
                     if not len(lost):

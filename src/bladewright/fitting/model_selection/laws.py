@@ -36,6 +36,9 @@ class ResizableLaw(ABC):
 
     name: str
     """path of its field"""
+    fewest: Counts
+    """numbers of control points that it has at least"""
+    most: Counts
     rich: Counts
     """its numbers of control points in a rich structure"""
     holds_corners: bool = False
@@ -46,10 +49,6 @@ class ResizableLaw(ABC):
     @abstractmethod
     def counts_of(self, design: Any) -> Counts:
         """Its numbers of control points in a design."""
-
-    @abstractmethod
-    def limits(self) -> tuple[Counts, Counts]:
-        """Fewest and most of them."""
 
     @abstractmethod
     def paths(self, design: Any) -> list[str]:
@@ -133,7 +132,6 @@ class SpanLaw(ResizableLaw):
 
     row: Row = ONE
     """along the chord"""
-    span: Row = ALONG_SPAN
     along_span: tuple[int, ...] = (1,)
 
     def laws(self, design: Any) -> list[Law]:
@@ -145,9 +143,6 @@ class SpanLaw(ResizableLaw):
         laws = self.laws(design)
         return self.row.count(len(laws)), max((len(law_points(law)) for law in laws), default=1)
 
-    def limits(self) -> tuple[Counts, Counts]:
-        return (0 if self.row.optional else self.row.fewest, 1), (self.row.most, self.span.most)
-
     def paths(self, design: Any) -> list[str]:
         laws = self.laws(design)
         stems = [self.name] if self.row is ONE else [f"{self.name}[{i}]" for i in range(len(laws))]
@@ -158,7 +153,7 @@ class SpanLaw(ResizableLaw):
         return replace(found[0], values=(0.0,) * len(found[0].span)) if found else None
 
     def embedding(self, counts: Counts, other: Counts) -> Reals:
-        along, across = self.row.embedding(counts[0], other[0]), self.span.embedding(counts[1], other[1])
+        along, across = self.row.embedding(counts[0], other[0]), ALONG_SPAN.embedding(counts[1], other[1])
         return np.asarray(np.kron(along, across))
 
     def resized(self, design: Any, counts: Counts, stations: Stations | None) -> Any:
@@ -234,9 +229,6 @@ class ChannelCurves(ResizableLaw):
         walls = {"hub": 2, "shroud": 2}
         return tuple(len(getattr(design.channel, name)) + walls.get(name, 0) for name in CHANNEL_CURVES)
 
-    def limits(self) -> tuple[Counts, Counts]:
-        return (2,) * 4, (MOST_CURVE,) * 4
-
     def paths(self, design: Any) -> list[str]:
         curves = [(name, len(getattr(design.channel, name))) for name in CHANNEL_CURVES]
         return [f"channel.{name}[{i}].{axis}" for name, count in curves for i in range(count) for axis in "xr"]
@@ -292,9 +284,6 @@ class CurvePoints(ResizableLaw):
     def counts_of(self, design: Any) -> Counts:
         return (len(value_at(design, self.name).points),)
 
-    def limits(self) -> tuple[Counts, Counts]:
-        return (2,), (MOST_CURVE,)
-
     def paths(self, design: Any) -> list[str]:
         return [f"{self.name}.points[{i}].{axis}" for i in range(*self.counts_of(design)) for axis in self.axes]
 
@@ -331,9 +320,6 @@ class WallPoints(CurvePoints):
     holds_corners: bool = True
     along_span: tuple[int, ...] = ()
 
-    def limits(self) -> tuple[Counts, Counts]:
-        return (FEWEST_ON_WALL,), (MOST_CURVE,)
-
     def way(self, line: Reals) -> Reals:
         return np.asarray(cumulative_length(line))
 
@@ -355,9 +341,6 @@ class SegmentPoints(ResizableLaw):
 
     def counts_of(self, design: Any) -> Counts:
         return (len(value_at(design, self.name).abscissas),)
-
-    def limits(self) -> tuple[Counts, Counts]:
-        return (max(1, DEGREE + 1 - sum(self.held)),), (MOST_CHORD,)
 
     def paths(self, design: Any) -> list[str]:
         inner = range(*self.counts_of(design))

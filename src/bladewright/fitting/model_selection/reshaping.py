@@ -57,7 +57,7 @@ def richest(design: Design, *, sampled: bool = False) -> Structure:
     own = structure_of(design)
 
     def rich(law: ResizableLaw, place: int, count: int) -> int:
-        most = _determined(own, law, place) if sampled else law.limits()[1][place]
+        most = _determined(own, law, place) if sampled else law.most[place]
         return max(count, min(law.rich[place], most))
 
     return _with_each(own, resizable_laws(design), rich)
@@ -66,7 +66,7 @@ def richest(design: Design, *, sampled: bool = False) -> Structure:
 def _determined(own: Structure, law: ResizableLaw, place: int) -> int:
     """The most control points of a law that a structure's samples determine, where it is sampled."""
     sampled = own.samples and law.name in THICKNESSES and place == 0
-    return own.samples - SPARE_SAMPLES if sampled else law.limits()[1][place]
+    return own.samples - SPARE_SAMPLES if sampled else law.most[place]
 
 
 ROWS_PER_KNOT = 3
@@ -172,7 +172,7 @@ def wider_structure(
 
     def wider(law: ResizableLaw, place: int, count: int) -> int:
         determined = _determined(own, law, place)
-        most = determined if count < determined else law.limits()[1][place]
+        most = determined if count < determined else law.most[place]
         return max(least.counts[law.name][place], min(count + max(1, count // share), most))
 
     return _towards(_with_each(own, resizable_laws(design), wider), design, free, points, rows)
@@ -185,7 +185,7 @@ def _towards(whole: Structure, design: Design, free: Collection[str], points: in
     """
 
     def within_rows(law: ResizableLaw, place: int, count: int) -> int:
-        return max(min(count, rows), law.limits()[0][place]) if place in law.along_span else count
+        return max(min(count, rows), law.fewest[place]) if place in law.along_span else count
 
     laws = resizable_laws(design)
     whole, own = (_with_each(each, laws, within_rows) for each in (whole, structure_of(design)))

@@ -15,11 +15,11 @@ from bladewright.designs import Design, Stations
 from bladewright.errors import FitError
 from bladewright.fitting.free_parameters import EDGES, WALLS, sliding_coordinate
 from bladewright.fitting.model_selection.laws import (
-    ALONG_SPAN,
     COMPARED_PLACES,
     FEWEST_ON_WALL,
     MOST_CHORD,
-    ONE,
+    MOST_CURVE,
+    MOST_SPAN,
     ChannelCurves,
     Counts,
     CurvePoints,
@@ -37,6 +37,7 @@ from bladewright.section.camber_angle import CamberAngle
 from bladewright.section.curvature_meanline import CurvatureMeanline
 from bladewright.section.laws import named_laws
 from bladewright.section.segmented.part import SegmentedSection
+from bladewright.section.segmented.segment import DEGREE
 from bladewright.section.segmented.skin import SEGMENTS
 from bladewright.section.suction_pressure.part import SuctionPressure
 from bladewright.section.unified import UnifiedSection
@@ -125,30 +126,30 @@ def resizable_curves(design: Any) -> list[ResizableLaw]:  # noqa: ARG001 - most 
 
 @resizable_curves.register
 def _(design: UnifiedBlade) -> list[ResizableLaw]:
-    return [ChannelCurves(name="channel", rich=RICH_CHANNEL, degree=design.channel.degree)]
+    fewest, most = (2,) * 4, (MOST_CURVE,) * 4
+    return [ChannelCurves(name="channel", fewest=fewest, most=most, rich=RICH_CHANNEL, degree=design.channel.degree)]
 
 
 @resizable_curves.register
 def _(design: SectionedBlade) -> list[ResizableLaw]:
-    found: list[ResizableLaw] = []
+    found, most, rich = list[ResizableLaw](), (MOST_CURVE,), (RICH_CURVE,)
     for edge in EDGES:
         if isinstance(getattr(design, edge), ThroughPoints):
             axes = "x" if sliding_coordinate(design, edge) == "r" else "r"
-            found.append(CurvePoints(name=edge, rich=(RICH_CURVE,), axes=axes))
+            found.append(CurvePoints(name=edge, fewest=(2,), most=most, rich=rich, axes=axes))
     for wall in WALLS:
         curve = getattr(design.flow_path, wall)
         if isinstance(curve, ThroughPoints) and len(curve.points) >= FEWEST_ON_WALL:
             way = cumulative_length(np.real(np.array(curve.points)))
-            stations = tuple((way / way[-1]).tolist())
-            found.append(WallPoints(name=f"flow_path.{wall}", rich=(RICH_CURVE,), axes="xr", stations=stations))
+            name, fewest, stations = f"flow_path.{wall}", (FEWEST_ON_WALL,), tuple((way / way[-1]).tolist())
+            found.append(WallPoints(name=name, fewest=fewest, most=most, rich=rich, axes="xr", stations=stations))
     return found
 
 
 @resizable_curves.register
 def _(design: SegmentedSection) -> list[ResizableLaw]:
     """The inner control points of the segments, but for those whose skin morphs."""
-    found: list[ResizableLaw] = []
-    part = design.section
+    found, part, most, rich = list[ResizableLaw](), design.section, (MOST_CHORD,), (RICH_SEGMENT,)
     for sign, side in ((1.0, "upper"), (-1.0, "lower")):
         given = getattr(part, side)
         joints = [0 if part.nose is None else part.nose.continuity, given.front_joint.continuity]
@@ -156,7 +157,8 @@ def _(design: SegmentedSection) -> list[ResizableLaw]:
         for segment, (front, rear) in zip(SEGMENTS, pairwise(joints), strict=True):
             if getattr(given, segment).skin is None:
                 name, held = f"section.{side}.{segment}", (1 + front, 1 + rear)
-                found.append(SegmentPoints(name=name, rich=(RICH_SEGMENT,), sign=sign, held=held))
+                fewest = (max(1, DEGREE + 1 - sum(held)),)
+                found.append(SegmentPoints(name=name, fewest=fewest, most=most, rich=rich, sign=sign, held=held))
     return found
 
 
@@ -168,17 +170,18 @@ def sized_laws(design: Any) -> list[ResizableLaw]:
         )
     part = getattr(design, "section", design)
     stem, rich = ("", RICH_CHORDWISE) if part is design else ("section.", RICH_SECTION)
-    rows, span = chordwise_rows(part), ALONG_SPAN if design.dimension == 3 else ONE
-    found: list[ResizableLaw] = []
+    rows, most_span, found = chordwise_rows(part), MOST_SPAN if design.dimension == 3 else 1, list[ResizableLaw]()
     for name, row in rows.items():
-        numbers = rich[design.dimension], _rich_span(stem, name)
-        # of the control points of a second derivative only the ratios count, so that the largest is held
+        fewest, most = (0 if row.optional else row.fewest, 1), (row.most, most_span)
+        numbers, path = (rich[design.dimension], _rich_span(stem, name)), f"{stem}{name}"
         kind = HeightsLaw if name.endswith("_heights") else SpanLaw
-        found.append(kind(name=f"{stem}{name}", rich=numbers, row=row, span=span, holds_corners=name == "curvature"))
+        # of the control points of a second derivative only the ratios count, so that the largest is held
+        held = name == "curvature"
+        found.append(kind(name=path, fewest=fewest, most=most, rich=numbers, row=row, holds_corners=held))
     for path, _ in named_laws(design) if design.dimension == 3 else ():
         in_row = path.removeprefix(stem).partition("[")[0] in rows
         if (path.startswith(stem) or path in POSITIONS) and not (in_row or path.startswith(WEIGHTS)):
-            found.append(SpanLaw(name=path, rich=(1, _rich_span(stem, path))))
+            found.append(SpanLaw(name=path, fewest=(1, 1), most=(1, MOST_SPAN), rich=(1, _rich_span(stem, path))))
     return [*found, *resizable_curves(design)]
 
 
