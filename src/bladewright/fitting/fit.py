@@ -54,14 +54,11 @@ CASCADE_NOTE = (
     "nothing said how the blade stands, and it is taken for one of a linear cascade, with its span along z: one that "
     "stands around x needs the arrangement annular, one with its span along y the arrangement linear"
 )
-"""note where a cloud without a start was taken for a blade of a linear cascade"""
 INTERRUPTED_NOTE = (
     f"the search was interrupted, so the design's tolerance is at least {EXACT:g} of the chord, which "
     "builds in a moment: lower it for finer surfaces"
 )
-"""note on a blade that a search had found when it was interrupted"""
 WHOLE_BLADE_HINT = "is it one whole blade, with both sides and both edges? If so, give a start design or bounds"
-"""what to check where no design was found"""
 
 
 @single_threaded
@@ -240,10 +237,8 @@ def _check_call(
 
 
 def _searched_for(task: Task) -> Task:
-    """The task with no more points than searches use, without those that stand alone.
-
-    Where most points are copies, each place is taken once: copies share their noise, which would seem to be a misfit.
-    """
+    """The task with no more points than searches use, without those that stand alone."""
+    # where most points are copies, each place is taken once: copies share their noise, which would seem to be a misfit
     _, first = np.unique(task.points, axis=0, return_index=True)
     some = (task.part(np.sort(first)) if 2 * len(first) <= len(task.points) else task).thinned(MOST_POINTS)
     places, back = np.unique(some.points, axis=0, return_inverse=True)

@@ -65,16 +65,14 @@ def _longer(points: Array) -> str:
 
 
 def _across_walls(design: SectionedBlade) -> set[str]:
-    """For every point of hub and shroud the coordinate, x or r, across which the wall runs there.
-
-    Where points at equal fractions of whole walls are joined, the shroud's ends decide which these are, and are free.
-    """
+    """For every point of hub and shroud the coordinate, x or r, across which the wall runs there."""
     found = set()
     for wall in WALLS:
         curve = getattr(design.flow_path, wall)
         if isinstance(curve, ThroughPoints):
             way = np.gradient(np.real(np.array(curve.points)), axis=0) ** 2
             across = np.where(way[:, 0] >= way[:, 1], "r", "x").tolist()
+            # where points at equal fractions of whole walls are joined, the shroud's ends decide which these are
             if wall == "shroud" and design.flow_path.matched == "ends":
                 across[0] = across[-1] = "xr"
             found |= {f"flow_path.{wall}.points[{i}].{name}" for i, names in enumerate(across) for name in names}

@@ -32,7 +32,6 @@ SHARP_NOTE = (
     "the points tell the {} from no sharp one, and the edges of this family are round: the radius is held "
     f"at {SHARP_RADIUS:g} (--family profile has sharp edges)"
 )
-"""note of such edges"""
 EDGES = {
     "leading edge": ("leading_edge_radius", slice(None, 3)),
     "trailing edge": ("trailing_edge_radius", slice(-1, -4, -1)),

@@ -179,10 +179,7 @@ def wider_structure(
 
 
 def _towards(whole: Structure, design: Design, free: Collection[str], points: int, rows: int) -> Structure:
-    """A structure with more control points than a design's own, or as large a share of them as the points allow.
-
-    Along the span it has no more of them than rows, but the fewest that its laws may have.
-    """
+    """A whole structure, or as large a share of what it has more than a design as points, and rows, allow."""
 
     def within_rows(law: ResizableLaw, place: int, count: int) -> int:
         return max(min(count, rows), law.fewest[place]) if place in law.along_span else count

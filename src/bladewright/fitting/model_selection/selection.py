@@ -47,9 +47,7 @@ QUICK_POINTS, SEVERAL_POINTS, THOROUGH_POINTS = 1000, 4000, 12_000
 WEAK_REGULARISATION = 0.1
 """factor of the regularisation where a match is only improved (design/matching_constants.md)"""
 CORNERS_HELD_NOTE = "the radii of the channel's corners are read off the points, held, and not counted"
-"""note where the channel's corners are read off the points"""
 HELD_NOTE = "the points do not determine {}, which are held where a smooth design has them"
-"""note where parameters are held"""
 DETERMINED_MARGIN, MOST_HOLDINGS = 1.5, 3
 """standard deviations that a determined direction of the parameters has in its own scale at least, and how often
 parameters are held at most (design/matching_constants.md)"""
@@ -73,10 +71,7 @@ class RichMatch:
 def selected_match(
     task: Task, first: Design, target: MatchTarget, *, like: Structure | None, guessed: bool
 ) -> tuple[Match, str]:
-    """The match from a first design, a guess or a start, and why it ends where no target is met.
-
-    `like` is the structure of a given design.
-    """
+    """The match from a first design or a start, and why it misses what is asked; `like` is the structure of another."""
     return reduced_match(rich_match(task, first, target, like=like, guessed=guessed), target)
 
 

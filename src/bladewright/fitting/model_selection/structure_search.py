@@ -207,7 +207,7 @@ class StructureSearch:
         def predicted(model: LinearModel) -> list[Prediction]:
             return [each for each in eliminated(model, 0, relative) if each.largest <= PREDICTED * relative]
 
-        def reweighted_search(model: LinearModel, prediction: Prediction) -> Match | None:
+        def search(model: LinearModel, prediction: Prediction) -> Match | None:
             start = self._start(model, prediction)
             return start and nearest_to_tolerance(self.task, start, prediction.weights, tolerance)
 
@@ -216,9 +216,7 @@ class StructureSearch:
 
         found, nearest = rich if kept(rich) and not is_refused(rich) else None, None
         if kept(rich) or has_systematic_misfit(rich):
-            found, nearest = self._fewest(
-                rich, found, rounds=1, predicted=predicted, search=reweighted_search, kept=kept
-            )
+            found, nearest = self._fewest(rich, found, rounds=1, predicted=predicted, search=search, kept=kept)
         if found is not None:
             return found, ""
         nearest = min(filter(None, (rich, nearest)), key=lambda each: each.maximum)
