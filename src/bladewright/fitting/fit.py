@@ -185,7 +185,7 @@ def _ways_of(
     return [(motion, ())]
 
 
-def named_family(family: str, dimension: int, given: Design | None = None) -> FitFamily | None:
+def named_family(family: str, dimension: int, given: Design | None) -> FitFamily | None:
     """The named family, or that of a given design where none is named; None is the unified one.
 
     Raises FitError where the name is unknown or of the other dimension.

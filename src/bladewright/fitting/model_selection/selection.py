@@ -94,7 +94,7 @@ def rich_match(task: Task, first: Design, target: MatchTarget, *, like: Structur
         found = replace(search, task=few.trusting(found), predictions=1).well_predicted(found)
         search = replace(search, first=found.design)
     near = target.open and found.maximum < NEAR * found.model.chord
-    rich = found if near else search.rich(found, target, sampled=target.parameters is None)
+    rich = found if near else search.rich(found, target)
     if len(rich.rows) < len(several.points):
         # no richer one has a shape, or none is needed: the first match, of few points, stands
         rich = evaluated(several, rich.design, noise=rich.rms)

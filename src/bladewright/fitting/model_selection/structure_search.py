@@ -89,12 +89,11 @@ class StructureSearch:
     predictions: int = MOST_PREDICTIONS
     """matches about which structures are predicted at most"""
 
-    def rich(self, match: Match, target: MatchTarget, *, sampled: bool = False) -> Match:
-        """The match of a rich structure, and of ever richer ones until one is near enough or comes hardly nearer.
-
-        Where it is to be `sampled`, the first has no more control points along the chord than its samples determine.
-        """
+    def rich(self, match: Match, target: MatchTarget) -> Match:
+        """The match of a rich structure, and of ever richer ones until one is near enough or comes hardly nearer."""
         found, least = match, target.tolerance or NEAR * match.model.chord
+        # the structure of a design, or one of fewer parameters, is sought from more than its samples determine
+        first = partial(rich_structure, sampled=target.open or target.tolerance is not None)
         search = partial(searched, min_reduction=ROUGH_REDUCTION, settled=SETTLED_RICH, fading=True)
         shown = len(self.task.points), self._rows_shown(match)
         while found is match or (has_systematic_misfit(found) and not self._is_enough(found, target)):
@@ -102,7 +101,6 @@ class StructureSearch:
                 # in space structures begin without what they are predicted not to need; a slim one grows without it too
                 slim = self.task.dimension == 3 and (not target.open or is_exact(found))
                 about = self._without_surplus(found) if slim and found is not match else found.design
-                first = partial(rich_structure, sampled=sampled)
                 widened = first if found is match else partial(wider_structure, slim=slim)
                 design = widened_where_feasible(about, widened(about, self.task.free(about), *shown))
                 if self.task.dimension == 3:
