@@ -20,7 +20,7 @@ from bladewright.fitting.assessment.acceptance import GROSS_DEVIATION, NEAR_EVER
 from bladewright.fitting.matching.footpoints import Side, nearest_footpoints
 from bladewright.fitting.matching.residuals import PlacedCloud
 from bladewright.fitting.matching.search import QUICK_ROUNDS, ROUGH_REDUCTION, Match, Task, searched
-from bladewright.fitting.model_selection.reshaping import with_feasible_edges
+from bladewright.fitting.model_selection.structure import with_feasible_edges
 from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS
 
 SHARP_RADIUS = 5e-6

@@ -15,6 +15,7 @@ import numpy as np
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, MatchTarget, trusted_distance
+from bladewright.fitting.matching.footpoints import Footpoints, part_of
 from bladewright.fitting.matching.noise import EXACT
 from bladewright.fitting.matching.search import (
     QUICK_ROUNDS,
@@ -37,13 +38,13 @@ from bladewright.fitting.model_selection.elimination import (
     eliminated,
     reweighted,
 )
-from bladewright.fitting.model_selection.reshaping import (
+from bladewright.fitting.model_selection.laws import MOST_SPAN
+from bladewright.fitting.model_selection.structure import (
+    reshaped,
     rich_structure,
-    rows_shown,
     widened_where_feasible,
     wider_structure,
 )
-from bladewright.fitting.model_selection.structure import reshaped
 from bladewright.nurbs.basis import Reals
 
 REFUSED_MARGIN = 6.0
@@ -332,3 +333,33 @@ def nearest_to_tolerance(task: Task, start: Match, weights: Reals, tolerance: fl
             break
         before, weights = excess, reweighted(weights, last.state.footpoints.distances, tolerance)
     return min(tried, key=lambda each: each.maximum)
+
+
+ROWS_PER_KNOT = 3
+"""rows of points for each inner knot of a law along the span, where Ruppert 2002 has four (design/matching.md)"""
+CHORD_PARTS = 10
+"""parts of each side, along the chord, in each of which rows are counted (design/matching_constants.md)"""
+
+
+def rows_shown(feet: Footpoints) -> int:
+    """How many control points along the span points show, by their footpoints (n,).
+
+    A spline's control points are determined where each basis function has a place of its own (Schoenberg and Whitney
+    1953), but between so few it swings: a cubic one has an inner knot for every few rows, and fewer control points than
+    rows, by the median of parts of the chord. Rows that lead across the design's lines show more of the span: knots go
+    by the most equal parts of it that all have points.
+    """
+    order = 4
+    most = ROWS_PER_KNOT * (MOST_SPAN - order)
+    part = feet.side * CHORD_PARTS + part_of(feet.u, CHORD_PARTS)
+    rows = int(np.median([_apart(feet.v[part == number], 1.0 / most) for number in np.unique(part)]))
+    filled = next((n for n in range(most, 1, -1) if len(np.unique(part_of(feet.v, n))) == n), 1)
+    return min(rows - (rows > order), order + filled // ROWS_PER_KNOT)
+
+
+def _apart(places: Reals, distance: float) -> int:
+    """How many of some places (n,) are at least a distance apart, taken from the lowest on."""
+    ordered, count, row = np.sort(places), 0, 0
+    while row < len(ordered):
+        count, row = count + 1, int(np.searchsorted(ordered, ordered[row] + distance))
+    return count
