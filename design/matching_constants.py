@@ -54,7 +54,7 @@ ROWS = {
     "families/laws.py": ("twisted-blunt-noisy-profile",),
     "families/sections.py": ("example-compressor-stator", "Aachen2D-suction-pressure"),
     "fit.py": ("LS89-free",),
-    "model_selection/curves.py": ("twisted-blunt-noisy-profile", "example-morphing-airfoil"),
+    "model_selection/laws.py": ("twisted-blunt-noisy-profile", "example-morphing-airfoil"),
     "model_selection/structure.py": (*SECTIONS, *BLADES, "Aachen2D-suction-pressure"),
     "model_selection/structure_search.py": (*SECTIONS, *BLADES, "Aachen-tolerance"),
     "matching/blade_ends.py": ("Aachen-parameters", "radial-diffuser-free"),

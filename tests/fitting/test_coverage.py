@@ -14,8 +14,8 @@ from bladewright.fitting.free_parameters import free_parameters_of
 from bladewright.fitting.matching.footpoints import Footpoints
 from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.model_selection.laws import MOST_SPAN
-from bladewright.fitting.model_selection.reshaping import rows_shown
 from bladewright.fitting.model_selection.structure import reshaped, structure_of
+from bladewright.fitting.model_selection.structure_search import rows_shown
 from machines import example
 
 DESIGNS = {name: example(name) for name in ("turbine-section", "aachen-stator")}

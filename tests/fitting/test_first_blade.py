@@ -19,7 +19,7 @@ from bladewright.fitting.initial_guess.blade import (
     spans_along_y,
 )
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Task, about_x, evaluated, searched
-from bladewright.fitting.model_selection.edges import nearest_from_other_edges
+from bladewright.fitting.model_selection.other_minima import nearest_from_other_edges
 from bladewright.fitting.model_selection.selection import GUESS_NOISE
 from bladewright.nurbs.closest import closest_on_surface
 from bladewright.section.laws import Span

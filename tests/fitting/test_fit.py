@@ -15,8 +15,7 @@ from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching import search
 from bladewright.fitting.matching.footpoints import nearest_footpoints
-from bladewright.fitting.model_selection.reshaping import FIRST_SECTION
-from bladewright.fitting.model_selection.structure import reshaped
+from bladewright.fitting.model_selection.structure import FIRST_SECTION, reshaped
 from bladewright.section.unified_limits import THICKNESSES
 from machines import COARSE, built, example
 from machines.unified_paths import INFLOW_IN_PATH

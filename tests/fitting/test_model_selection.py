@@ -10,9 +10,14 @@ from bladewright.fitting.assessment.acceptance import MatchTarget
 from bladewright.fitting.free_parameters import corner_radii, free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.model_selection.elimination import LinearModel, best_of_size, eliminated, reweighted
-from bladewright.fitting.model_selection.reshaping import rich_structure, wider_structure
 from bladewright.fitting.model_selection.selection import selected_match
-from bladewright.fitting.model_selection.structure import reshaped, resizable_laws, structure_of
+from bladewright.fitting.model_selection.structure import (
+    reshaped,
+    resizable_laws,
+    rich_structure,
+    structure_of,
+    wider_structure,
+)
 from bladewright.fitting.model_selection.structure_search import StructureSearch
 from bladewright.section.unified_limits import THICKNESSES
 from machines import example

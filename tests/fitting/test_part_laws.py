@@ -17,10 +17,15 @@ from bladewright.fitting.families.section_shape import section_shape
 from bladewright.fitting.families.sections import _through_points, criterion, first_designs
 from bladewright.fitting.free_parameters import EDGES, FreeParameters
 from bladewright.fitting.matching.search import Task, searched
-from bladewright.fitting.model_selection import reshaping
+from bladewright.fitting.model_selection import structure as structures
 from bladewright.fitting.model_selection.elimination import LinearModel
-from bladewright.fitting.model_selection.reshaping import rich_structure, richest
-from bladewright.fitting.model_selection.structure import reshaped, resizable_laws, structure_of
+from bladewright.fitting.model_selection.structure import (
+    reshaped,
+    resizable_laws,
+    rich_structure,
+    richest,
+    structure_of,
+)
 from bladewright.fitting.models.sectioned import PlanarModel, infeasibility
 from bladewright.section.camber_angle import CamberAngleSection
 from bladewright.section.laws import Span
@@ -64,12 +69,12 @@ def test_where_a_wider_structure_has_no_shape_those_laws_get_wider_that_leave_on
     wide = richest(COMPRESSOR)
     # a law of the metal angle with more control points takes the shape away
     monkeypatch.setattr(
-        reshaping, "_has_shape", lambda design: structure_of(design).counts["section.metal_angle_in"] == most
+        structures, "_has_shape", lambda design: structure_of(design).counts["section.metal_angle_in"] == most
     )
     most = wide.counts["section.metal_angle_in"]
-    assert structure_of(reshaping.widened_where_feasible(COMPRESSOR, wide)) == wide
+    assert structure_of(structures.widened_where_feasible(COMPRESSOR, wide)) == wide
     most = own.counts["section.metal_angle_in"]
-    found = structure_of(reshaping.widened_where_feasible(COMPRESSOR, wide)).counts
+    found = structure_of(structures.widened_where_feasible(COMPRESSOR, wide)).counts
     assert found == {**wide.counts, "section.metal_angle_in": most}
 
 
@@ -101,7 +106,7 @@ def test_a_section_with_more_control_points_along_the_chord_is_nearly_the_same(d
         assert after.half(place) == pytest.approx(before.half(place), abs=0.02)
     model = LinearModel(searched(task(design), wider, rounds=0), 0)
     # a row that may be left out, too
-    fewest = [law.limits()[0] for law in model.laws]
+    fewest = [each.law.fewest for each in model.laws]
     assert model.prediction(fewest).parameters < len(FreeParameters()(design))
     assert len(model.designed(model.prediction(fewest)).parameters()) <= len(design.parameters())
 

@@ -23,7 +23,7 @@ def wider(design):
     """The structure in which every law has as many more control points as its basis holds exactly."""
     more, structure = {1: 2, 2: 3, 3: 4, 4: 5, 5: 7}, structure_of(design)
     for law in resizable_laws(design):
-        counts = zip(law.counts_of(design), law.limits()[1], strict=True)
+        counts = zip(law.counts_of(design), law.most, strict=True)
         structure = structure.resized(law.name, tuple(min(more.get(count, count), most) for count, most in counts))
     return structure
 

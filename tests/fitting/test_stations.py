@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 import bladewright as bw
-from bladewright.fitting.model_selection.reshaping import richest
-from bladewright.fitting.model_selection.structure import reshaped, structure_of
+from bladewright.fitting.model_selection.structure import reshaped, richest, structure_of
 from bladewright.section.laws import law_points, named_laws, stations_of
 from machines import built
 from machines.stations import AXIAL, SPAN, TABLE, at_stations, moved

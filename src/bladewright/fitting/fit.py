@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
@@ -49,20 +50,15 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import choice
 from bladewright.section.unified import UnifiedSection
 
-UNIFIED_NAMES = ("unified", "unified-section")
-"""names of the unified family"""
 CASCADE_NOTE = (
     "nothing said how the blade stands, and it is taken for one of a linear cascade, with its span along z: one that "
     "stands around x needs the arrangement annular, one with its span along y the arrangement linear"
 )
-"""note where a cloud without a start was taken for a blade of a linear cascade"""
 INTERRUPTED_NOTE = (
     f"the search was interrupted, so the design's tolerance is at least {EXACT:g} of the chord, which "
     "builds in a moment: lower it for finer surfaces"
 )
-"""note on a blade that a search had found when it was interrupted"""
 WHOLE_BLADE_HINT = "is it one whole blade, with both sides and both edges? If so, give a start design or bounds"
-"""what to check where no design was found"""
 
 
 @single_threaded
@@ -109,19 +105,18 @@ def fit(
     or the call is wrong, and where no design is found. Reference: Agromayor et al. 2021, section 6.
     """
     points, notes = checked_cloud(cloud), tuple[str, ...]()
-    kind = named_family(family, points.shape[1], start if start is not None else like)
-    _check_call(points, kind, start, like, tolerance, parameters)
+    kind, given = named_family(family, points.shape[1], start or like), start is not None or like is not None
+    target = MatchTarget(tolerance=tolerance, parameters=parameters, structured=parameters is None and given)
+    _check_call(points, kind, start, like, target)
     if axis is not None and align:
         raise FitError(
             "axis and align are both given: axis says where the machine's axis is, align finds it; leave one out"
         )
     precision = None if weights is None else _weights(weights, len(points))
     finishing, start, like = without_finishing(start, like, name)
-    given = start is not None or like is not None
     header = DesignHeader(
         name=name, length_unit=length_unit, pitch=pitch, arrangement=arrangement, blade_count=blade_count
     )
-    target = MatchTarget(tolerance=tolerance, parameters=parameters, structured=parameters is None and given)
     free_parameters = free_parameters_of(free, fixed, started=start is not None)
     tell: Progress = progress or (lambda _: None)
     if align:
@@ -145,9 +140,7 @@ def fit(
         refuse_several_blades(every.points[walls.kinds != "wall"])
         return PlacedTask(motion=motion, notes=notes, start=start, every=every, shown=shown, hidden=hidden)
 
-    def matched(here: PlacedTask) -> Matched:
-        return _matched(_searched_for(here.shown), kind, here.start, like, header, target)
-
+    matched = partial(_matched, kind=kind, like=like, header=header, target=target)
     turns = list[PlacedTask]()
     try:
         turns.append(placed_nearest(ways, start, place))
@@ -181,7 +174,7 @@ def _ways_of(
     align: bool,
     given: bool,
 ) -> Ways:
-    """The motions into the machine's axes, and notes; without a given design a cascade's span lies along z after it."""
+    """The motions into the machine's axes, and notes; without a `given` design they turn a cascade's span to z."""
     if align:
         return [found_axes(points, arrangement=header.arrangement)] if start is None else registrations(points, start)
     motion = None if axis is None else axis_motion(axis, points.shape[1])
@@ -192,12 +185,12 @@ def _ways_of(
     return [(motion, ())]
 
 
-def named_family(family: str, dimension: int, given: Design | None = None) -> FitFamily | None:
+def named_family(family: str, dimension: int, given: Design | None) -> FitFamily | None:
     """The named family, or that of a given design where none is named; None is the unified one.
 
     Raises FitError where the name is unknown or of the other dimension.
     """
-    known = [*UNIFIED_NAMES, *FAMILIES, *(f"{name}-section" for name in FAMILIES)]
+    known = ["unified", "unified-section", *FAMILIES, *(f"{name}-section" for name in FAMILIES)]
     try:
         choice("family", family, known)
     except DesignError as error:
@@ -210,19 +203,14 @@ def named_family(family: str, dimension: int, given: Design | None = None) -> Fi
 
 
 def _check_call(
-    points: Reals,
-    family: FitFamily | None,
-    start: Design | None,
-    like: Design | None,
-    tolerance: float | None,
-    count: int | None,
+    points: Reals, family: FitFamily | None, start: Design | None, like: Design | None, target: MatchTarget
 ) -> None:
     """Refuse what does not go together; growth knows the curves of a unified blade's own channel alone."""
-    kind: type = {2: UnifiedSection, 3: UnifiedBlade}[points.shape[1]]
-    of_family, other = "", "points of the other kind"
+    kinds, of_family, other, least = {2: UnifiedSection, 3: UnifiedBlade}, "", "points of the other kind", 14
     if family is not None:
-        kind = {2: family.section, 3: family.blade}[points.shape[1]]
-        of_family, other = f" of the family {family.name}", "another family"
+        kinds, of_family = {2: family.section, 3: family.blade}, f" of the family {family.name}"
+        other, least = "another family", 4
+    kind, tolerance, count = kinds[points.shape[1]], target.tolerance, target.parameters
     for label, design in (("start", start), ("like", like)):
         if design is not None and not isinstance(design, kind):
             raise FitError(
@@ -244,16 +232,13 @@ def _check_call(
         raise FitError(f"tolerance is {tolerance!r}: a positive length in metres is needed, such as 5e-5")
     if tolerance is not None and count is not None:
         raise FitError("tolerance and parameters are both given: the one decides the other; leave one out")
-    least = 14 if family is None else 4
     if count is not None and (isinstance(count, bool) or not least <= count <= 2000):
         raise FitError(f"parameters is {count!r}: a whole number from {least} to 2000 is needed")
 
 
 def _searched_for(task: Task) -> Task:
-    """The task with no more points than searches use, without those that stand alone.
-
-    Where most points are copies, each place is taken once: copies share their noise, which would seem to be a misfit.
-    """
+    """The task with no more points than searches use, without those that stand alone."""
+    # where most points are copies, each place is taken once: copies share their noise, which would seem to be a misfit
     _, first = np.unique(task.points, axis=0, return_index=True)
     some = (task.part(np.sort(first)) if 2 * len(first) <= len(task.points) else task).thinned(MOST_POINTS)
     places, back = np.unique(some.points, axis=0, return_inverse=True)
@@ -261,14 +246,10 @@ def _searched_for(task: Task) -> Task:
 
 
 def _matched(
-    task: Task,
-    kind: FitFamily | None,
-    start: Design | None,
-    like: Design | None,
-    header: DesignHeader,
-    target: MatchTarget,
-) -> tuple[Match, Any, str]:
+    here: PlacedTask, *, kind: FitFamily | None, like: Design | None, header: DesignHeader, target: MatchTarget
+) -> Matched:
     """The match of a family, what it builds, and why it ends where no target is met."""
+    task, start = _searched_for(here.shown), here.start
     if kind is None:
         return matched_unified(task, start, like, header, target)
     free = task.free
@@ -292,12 +273,7 @@ def _weights(weights: ArrayLike, count: int) -> Reals:
 
 
 def _reported(
-    match: Match,
-    plain: Any,
-    here: PlacedTask,
-    target: MatchTarget,
-    notes: tuple[str, ...],
-    finishing: RowDesign | None,
+    match: Match, plain: Any, here: PlacedTask, target: MatchTarget, notes: tuple[str, ...], finishing: RowDesign | None
 ) -> Fit:
     task, failures = here.every, list[str]()
     task.progress("measuring")

@@ -9,7 +9,7 @@ from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.derivatives.patterns import Patterns, chosen, matching
-from bladewright.designs import Design
+from bladewright.designs import Design, value_at
 from bladewright.errors import DesignError, FitError
 from bladewright.numerics.elementary import Array
 from bladewright.section.laws import law_points
@@ -35,28 +35,25 @@ def gauge_parameters(design: Design, *, walls: bool = False) -> frozenset[str]:
     coordinate along which the points of its edge curves slide on the curve. Where the `walls` are free, only that
     coordinate of the points of hub and shroud is held.
     """
-    values = design.parameters()
-    found = {path for path in values if path.startswith(NOT_IN_CLOUD)}
-    if isinstance(design, UnifiedBlade) and design.flow_path is not None:
-        found |= _in_flow_path(design)
-    found |= _largest_curvature(values)
-    section = getattr(design, "section", None)
+    values, section = design.parameters(), getattr(design, "section", None)
+    held, found = [*NOT_IN_CLOUD], _largest_curvature(values)
     if isinstance(section, Segmented):
-        held = ("section.partition", "section.stagger_angle", "leading_edge_y")
-        found |= {path for path in values if path.startswith(held)}
+        held += ["section.partition", "section.stagger_angle", "leading_edge_y"]
     if isinstance(section, PointsProfile):
         found |= _along_contour(section)
-    if isinstance(design, SectionedBlade):
-        found |= {path for path in values if path.startswith("flow_path.")}
-        found -= _across_walls(design) if walls else frozenset()
+    if isinstance(design, SectionedBlade) or (isinstance(design, UnifiedBlade) and design.flow_path is not None):
+        held.append("flow_path.")
         for edge in EDGES:
-            along = sliding_coordinate(design, edge)
-            found |= {path for path in values if path.startswith(f"{edge}.") and path.endswith(f".{along}")}
-    return frozenset(found)
+            points, along = (f"channel.{edge}", f"{edge}."), f".{sliding_coordinate(design, edge)}"
+            found |= {path for path in values if path.startswith(points) and path.endswith(along)}
+    found |= {path for path in values if path.startswith(tuple(held))}
+    return frozenset(found - _across_walls(design) if walls and isinstance(design, SectionedBlade) else found)
 
 
-def sliding_coordinate(design: SectionedBlade, edge: str) -> str:
+def sliding_coordinate(design: SectionedBlade | UnifiedBlade, edge: str) -> str:
     """The coordinate, x or r, in which an edge curve has its extent."""
+    if isinstance(design, UnifiedBlade):
+        return _longer(np.array(getattr(design.channel, edge)))
     curve = getattr(design, edge)
     return "r" if curve is None else _longer(curve.line(1.0).net)
 
@@ -67,33 +64,19 @@ def _longer(points: Array) -> str:
     return "x" if across[0] > across[1] else "r"
 
 
-def _in_flow_path(design: UnifiedBlade) -> frozenset[str]:
-    """Flow path, and the coordinates along which the points of the channel's edges slide on these."""
-    along = {edge: _longer(np.array(getattr(design.channel, edge))) for edge in EDGES}
-    return frozenset(
-        path
-        for path in design.parameters()
-        if path.startswith("flow_path.")
-        or any(path.startswith(f"channel.{edge}") and path.endswith(f".{name}") for edge, name in along.items())
-    )
-
-
-def _across_walls(design: SectionedBlade) -> frozenset[str]:
-    """For every point of hub and shroud the coordinate, x or r, across which the wall runs there.
-
-    Where points at equal fractions of whole walls are joined, the shroud's ends decide which these are, and are free.
-    """
+def _across_walls(design: SectionedBlade) -> set[str]:
+    """For every point of hub and shroud the coordinate, x or r, across which the wall runs there."""
     found = set()
     for wall in WALLS:
         curve = getattr(design.flow_path, wall)
         if isinstance(curve, ThroughPoints):
             way = np.gradient(np.real(np.array(curve.points)), axis=0) ** 2
-            across = np.where(way[:, 0] >= way[:, 1], "r", "x")
-            found |= {f"flow_path.{wall}.points[{i}].{name}" for i, name in enumerate(across)}
-    if design.flow_path.matched == "ends" and isinstance(design.flow_path.shroud, ThroughPoints):
-        last = len(design.flow_path.shroud.points) - 1
-        found |= {f"flow_path.shroud.points[{i}].{name}" for i in (0, last) for name in "xr"}
-    return frozenset(found)
+            across = np.where(way[:, 0] >= way[:, 1], "r", "x").tolist()
+            # where points at equal fractions of whole walls are joined, the shroud's ends decide which these are
+            if wall == "shroud" and design.flow_path.matched == "ends":
+                across[0] = across[-1] = "xr"
+            found |= {f"flow_path.{wall}.points[{i}].{name}" for i, names in enumerate(across) for name in names}
+    return found
 
 
 def _along_contour(section: PointsProfile) -> set[str]:
@@ -169,16 +152,20 @@ def corner_radii(design: Design) -> tuple[str, ...]:
     """Paths of the radii at which a blade's edges meet hub and shroud."""
     if not isinstance(design, UnifiedBlade):
         return ()
-    ends = {edge: (0, len(getattr(design.channel, edge)) - 1) for edge in EDGES}
-    return tuple(f"channel.{edge}[{place}].r" for edge in EDGES for place in ends[edge])
+    return tuple(f"{corner}.r" for wall in WALLS for corner in _corners(design, wall))
+
+
+def _corners(design: UnifiedBlade, wall: str) -> list[str]:
+    """Paths of the points at which a blade's edges meet hub or shroud."""
+    lasts = {edge: len(getattr(design.channel, edge)) - 1 for edge in EDGES}
+    return [f"channel.{edge}[{last if wall == 'shroud' else 0}]" for edge, last in lasts.items()]
 
 
 def parameters_of_curve(design: Design, name: str) -> frozenset[str]:
     """Paths of the parameters of an edge or a wall of a blade; of a channel's corners, across the wall."""
     paths = [p for p in design.parameters() if p.startswith((f"channel.{name}", f"flow_path.{name}", f"{name}."))]
     if isinstance(design, UnifiedBlade) and name in WALLS:
-        corners = {edge: WALLS.index(name) * (len(getattr(design.channel, edge)) - 1) for edge in EDGES}
-        points = np.array([getattr(design.channel, edge)[place] for edge, place in corners.items()])
-        across = "r" if _longer(points) == "x" else "x"
-        paths += [f"channel.{edge}[{place}].{across}" for edge, place in corners.items()]
+        corners = _corners(design, name)
+        across = "r" if _longer(np.array([value_at(design, corner) for corner in corners])) == "x" else "x"
+        paths += [f"{corner}.{across}" for corner in corners]
     return frozenset(paths)

@@ -14,9 +14,8 @@ from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.initial_guess.section import first_section
 from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import Match, Task, searched
-from bladewright.fitting.model_selection.reshaping import FIRST_SECTION, with_feasible_edges
 from bladewright.fitting.model_selection.selection import FINAL_REDUCTION, THOROUGH_POINTS, selected_match
-from bladewright.fitting.model_selection.structure import reshaped, structure_of
+from bladewright.fitting.model_selection.structure import FIRST_SECTION, reshaped, structure_of, with_feasible_edges
 
 
 def matched_unified(

@@ -22,7 +22,7 @@ from bladewright.fitting.initial_guess.channel import SlicedChannel, machine_coo
 from bladewright.fitting.initial_guess.slices import PLACES, fitted_law, unified_numbers
 from bladewright.fitting.matching.blade_ends import ROW_LEAST_WIDTH, ROW_SPREAD
 from bladewright.fitting.matching.search import Task, about_x, evaluated, searched
-from bladewright.fitting.model_selection.reshaping import FIRST_BLADE, widened_where_feasible, with_feasible_edges
+from bladewright.fitting.model_selection.structure import FIRST_BLADE, widened_where_feasible, with_feasible_edges
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import plain_law

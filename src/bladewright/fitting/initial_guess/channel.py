@@ -16,7 +16,7 @@ from bladewright.designs import Point
 from bladewright.fitting.free_parameters import EDGES
 from bladewright.fitting.initial_guess.meridional_outline import alpha_boundary, corner_sets
 from bladewright.fitting.initial_guess.slices import PlanePoints, Slices, chord_direction, slices_of
-from bladewright.fitting.model_selection.curves import CHANNEL_CURVES
+from bladewright.fitting.model_selection.laws import CHANNEL_CURVES
 from bladewright.numerics.elementary import cross2, cumulative_length, length
 from bladewright.nurbs.basis import Reals, uniform_knots
 from bladewright.nurbs.fit import approximated

@@ -8,8 +8,7 @@ from bladewright.fitting.clouds.thinning import even_subset, without_isolated_po
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.slices import STEEPEST, PlanePoints, longest_chord, slices_of, unified_numbers
 from bladewright.fitting.matching.search import Match, Task, searched
-from bladewright.fitting.model_selection.reshaping import FIRST_SECTION, with_feasible_edges
-from bladewright.fitting.model_selection.structure import Structure
+from bladewright.fitting.model_selection.structure import FIRST_SECTION, Structure, with_feasible_edges
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.unified import UnifiedSection

@@ -8,6 +8,7 @@ Draper and Smith 1998, section 15.3; Lawson 1961 (weights).
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -24,8 +25,7 @@ LARGEST_STEP = 3
 """control points that a law loses or gains at a time at most (design/matching_constants.md)."""
 RIDGE = {2: 0.0, 3: 0.01}
 """cost of a change of a parameter by its scale, of the sum of squares (Hoerl and Kennard 1970), by dimension:
-linearisations reach about so far. Without it predicted blades lie tens of scales away where points say little, and
-searches from them take half as long again (design/matching.md); those of sections take a tenth of a second."""
+linearisations of blades reach about so far (design/matching_constants.md)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -62,6 +62,37 @@ class Prediction:
         return float(np.max(np.abs(self.rows)))
 
 
+class FreeLaw:
+    """A law whose control points are parameters of a match, and what is left of them with other counts."""
+
+    def __init__(self, law: ResizableLaw, match: Match) -> None:
+        problem, values, paths = match.problem, match.design.parameters(), law.paths(match.design)
+        self.law, self.design, self.counts = law, match.design, law.counts_of(match.design)
+        self.free = np.array([path in problem.paths for path in paths], dtype=bool)
+        """(k,) which of its control points' numbers are free"""
+        self.columns = np.array([problem.paths.index(path) for path in paths if path in problem.paths], dtype=int)
+        """of the free ones, among the parameters of the match"""
+        self._unit = float(next(iter(problem.scales.size[self.columns]), 1.0))
+        self._values = np.array([float(values[path]) for path in paths]) / self._unit
+        self.subspace, self.lost = cache(self._subspace), cache(self._lost)
+
+    def _subspace(self, counts: Counts) -> tuple[Reals, Reals, NDArray[np.bool_], Reals]:
+        """Its free parameters by those with other counts, the nearest of these, which are free, and the change."""
+        embedding = self.law.embedding(self.counts, counts)
+        offset = self.law.offset(self.design, self.counts, counts) / self._unit
+        nearest = np.asarray(np.linalg.lstsq(embedding, self._values - offset, rcond=None)[0])
+        kept = np.ones(embedding.shape[1], dtype=bool)
+        kept[[int(np.argmax(row)) for row in embedding[~self.free]]] = False
+        shift = (embedding @ nearest + offset - self._values)[self.free]
+        return embedding[np.ix_(self.free, kept)], nearest, kept, shift
+
+    def _lost(self, counts: Counts, fewer: Counts) -> tuple[Reals, Reals]:
+        """Directions (m, k) in which a law with some counts is none of those with fewer, and where these begin (k,)."""
+        embedding = self.law.embedding(counts, fewer)
+        directions = np.linalg.qr(embedding, mode="complete")[0][:, embedding.shape[1] :].T
+        return directions, self.law.offset(self.design, counts, fewer) / self._unit
+
+
 class LinearModel:
     """The residuals of a match as a linear function of its laws' control points."""
 
@@ -74,34 +105,22 @@ class LinearModel:
         self.residuals = problem.cloud_residuals.residuals(match.state)
         """(m,) those of the points first, in chords"""
         roots = problem.cloud_residuals.roots
-        self.slopes[: self.points] /= np.where(roots > 0.0, roots, np.inf)[:, None]
-        self.residuals[: self.points] /= np.where(roots > 0.0, roots, np.inf)
+        weighed = np.where(roots > 0.0, roots, np.inf)
+        self.slopes[: self.points] /= weighed[:, None]
+        self.residuals[: self.points] /= weighed
         self._penalty = problem.regularisation.matrix
         self._penalised = problem.regularisation.residuals(problem.vector(match.design))
-        place, values = {path: i for i, path in enumerate(problem.paths)}, match.design.parameters()
-
-        def may_change(law: ResizableLaw) -> bool:
-            # a law that is held in part keeps its control points, but for the channel's corners
-            free = [path in place for path in law.paths(match.design)]
-            return any(free) and (law.holds_corners or all(free))
-
-        self.laws = [law for law in resizable_laws(match.design) if may_change(law)]
-        paths = [law.paths(match.design) for law in self.laws]
-        self._free = [np.array([path in place for path in own]) for own in paths]
-        self._columns = [np.array([place[path] for path in own if path in place]) for own in paths]
-        self._size = [float(size[columns[0]]) for columns in self._columns]
-        self._values = [
-            np.array([float(values[path]) for path in own]) / unit for own, unit in zip(paths, self._size, strict=True)
-        ]
-        self._others = np.setdiff1d(np.arange(len(problem.paths)), np.concatenate([[], *self._columns]))
-        self._known: dict[tuple[int, Counts], tuple[Reals, Reals, NDArray[np.bool_], Reals]] = {}
-        self._lost: dict[tuple[int, Counts, Counts], tuple[Reals, Reals]] = {}
+        laws = [FreeLaw(law, match) for law in resizable_laws(match.design)]
+        # a law that is held in part keeps its control points, but for the channel's corners
+        self.laws = [each for each in laws if np.any(each.free) and (each.law.holds_corners or np.all(each.free))]
+        self._columns = np.concatenate([np.zeros(0, dtype=int), *(law.columns for law in self.laws)])
+        self._others = np.setdiff1d(np.arange(len(problem.paths)), self._columns)
         self.weighted(roots**2)
 
     @property
     def counts(self) -> tuple[Counts, ...]:
         """The numbers of control points of its own laws."""
-        return tuple(self.structure.counts[law.name] for law in self.laws)
+        return tuple(law.counts for law in self.laws)
 
     def weighted(self, weights: Reals) -> None:
         """Weigh the points by weights (n,)."""
@@ -146,15 +165,15 @@ class LinearModel:
         """
         found, first = [], len(self._others)
         for i, (law, counts) in enumerate(zip(self.laws, prediction.counts, strict=True)):
-            part, nearest, free, shift = self._law_subspace(i, counts)
+            part, nearest, free, shift = law.subspace(counts)
             own = slice(first, first + part.shape[1])
             first = own.stop
             values = nearest.copy()
-            values[free] += np.linalg.lstsq(part, prediction.change[self._columns[i]] - shift, rcond=None)[0]
+            values[free] += np.linalg.lstsq(part, prediction.change[law.columns] - shift, rcond=None)[0]
             for place, count in enumerate(counts):
-                for fewer in range(max(law.limits()[0][place], count - LARGEST_STEP), count):
+                for fewer in range(max(law.law.fewest[place], count - LARGEST_STEP), count):
                     smaller = (*counts[:place], fewer, *counts[place + 1 :])
-                    lost, offset = self._lost_directions(i, counts, smaller)
+                    lost, offset = law.lost(counts, smaller)
                     if not len(lost):
                         # a row that is left out has no laws along the span to lose control points
                         continue
@@ -164,41 +183,18 @@ class LinearModel:
                     found.append((loss / len(lost), len(lost), i, smaller))
         return sorted(found)
 
-    def _lost_directions(self, law: int, counts: Counts, fewer: Counts) -> tuple[Reals, Reals]:
-        """Directions (m, k) in which a law with some counts is none of those with fewer, and where these begin (k,)."""
-        key = law, counts, fewer
-        if key not in self._lost:
-            embedding = self.laws[law].embedding(counts, fewer)
-            directions = np.linalg.qr(embedding, mode="complete")[0][:, embedding.shape[1] :].T
-            self._lost[key] = directions, self.laws[law].offset(self.design, counts, fewer) / self._size[law]
-        return self._lost[key]
-
     def subspace(self, counts: Sequence[Counts]) -> tuple[Reals, Reals]:
         """The rich structure's parameters (k, j) by those of a narrower one, and their change (k,) to the nearest."""
-        laws = [self._law_subspace(i, each) for i, each in enumerate(counts)]
-        places, kept = np.concatenate([self._others, *self._columns]), np.eye(len(self._others))
+        laws = [law.subspace(each) for law, each in zip(self.laws, counts, strict=True)]
+        places, kept = np.concatenate([self._others, self._columns]), np.eye(len(self._others))
         found, shift = block_diag(kept, *(part for part, *_ in laws)), np.zeros(len(places))
         found[places] = found.copy()
         shift[places] = np.concatenate([np.zeros(len(kept)), *(change for *_, change in laws)])
         return found, shift
 
-    def _law_subspace(self, law: int, counts: Counts) -> tuple[Reals, Reals, NDArray[np.bool_], Reals]:
-        """A law's free parameters by those with other counts, the nearest of these, which are free, and the change."""
-        key = law, counts
-        if key not in self._known:
-            own = self.structure.counts[self.laws[law].name]
-            embedding, free = self.laws[law].embedding(own, counts), self._free[law]
-            offset = self.laws[law].offset(self.design, own, counts) / self._size[law]
-            nearest = np.asarray(np.linalg.lstsq(embedding, self._values[law] - offset, rcond=None)[0])
-            kept = np.ones(embedding.shape[1], dtype=bool)
-            kept[[int(np.argmax(row)) for row in embedding[~free]]] = False
-            shift = (embedding @ nearest + offset - self._values[law])[free]
-            self._known[key] = embedding[np.ix_(free, kept)], nearest, kept, shift
-        return self._known[key]
-
     def structured(self, counts: Sequence[Counts]) -> Structure:
         """The structure with these numbers of control points, and the samples that they need."""
-        changed = {law.name: each for law, each in zip(self.laws, counts, strict=True)}
+        changed = {law.law.name: each for law, each in zip(self.laws, counts, strict=True)}
         return replace(self.structure, counts={**self.structure.counts, **changed}).with_samples(self.samples)
 
     def designed(self, prediction: Prediction) -> Any:

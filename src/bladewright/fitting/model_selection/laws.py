@@ -1,4 +1,4 @@
-"""The laws of designs whose numbers of control points a match may choose, and the nearest ones of other numbers."""
+"""Laws and curves of designs whose numbers of control points a match may choose, and the nearest of other numbers."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -6,21 +6,19 @@ from dataclasses import dataclass, field, replace
 from typing import Any, final
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 
-from bladewright.designs import Law, Stations, value_at
+from bladewright.designs import Law, Point, Stations, value_at
 from bladewright.errors import DesignError
 from bladewright.fitting.matching.scales import scales_of
-from bladewright.nurbs.basis import Reals
-from bladewright.section.laws import (
-    Span,
-    law_basis,
-    law_points,
-    number_paths,
-    plain_law,
-    sampled_at,
-    stations_of,
-    with_values,
-)
+from bladewright.fitting.models.sectioned import SINGLE_SECTION
+from bladewright.numerics.elementary import cumulative_length, length
+from bladewright.nurbs.basis import Reals, basis, uniform_knots
+from bladewright.section.laws import Span, law_basis, law_points, number_paths, plain_law, stations_of, with_values
+from bladewright.section.segmented.part import side_joints
+from bladewright.section.segmented.segment import DEGREE, control_points, segment_knots
+from bladewright.section.segmented.skin import SEGMENTS
 
 Counts = tuple[int, ...]
 """numbers of control points of a law along its directions, or of several curves"""
@@ -38,6 +36,9 @@ class ResizableLaw(ABC):
 
     name: str
     """path of its field"""
+    fewest: Counts
+    """numbers of control points that it has at least"""
+    most: Counts
     rich: Counts
     """its numbers of control points in a rich structure"""
     holds_corners: bool = False
@@ -48,10 +49,6 @@ class ResizableLaw(ABC):
     @abstractmethod
     def counts_of(self, design: Any) -> Counts:
         """Its numbers of control points in a design."""
-
-    @abstractmethod
-    def limits(self) -> tuple[Counts, Counts]:
-        """Fewest and most of them."""
 
     @abstractmethod
     def paths(self, design: Any) -> list[str]:
@@ -135,7 +132,6 @@ class SpanLaw(ResizableLaw):
 
     row: Row = ONE
     """along the chord"""
-    span: Row = ALONG_SPAN
     along_span: tuple[int, ...] = (1,)
 
     def laws(self, design: Any) -> list[Law]:
@@ -147,9 +143,6 @@ class SpanLaw(ResizableLaw):
         laws = self.laws(design)
         return self.row.count(len(laws)), max((len(law_points(law)) for law in laws), default=1)
 
-    def limits(self) -> tuple[Counts, Counts]:
-        return (0 if self.row.optional else self.row.fewest, 1), (self.row.most, self.span.most)
-
     def paths(self, design: Any) -> list[str]:
         laws = self.laws(design)
         stems = [self.name] if self.row is ONE else [f"{self.name}[{i}]" for i in range(len(laws))]
@@ -160,7 +153,7 @@ class SpanLaw(ResizableLaw):
         return replace(found[0], values=(0.0,) * len(found[0].span)) if found else None
 
     def embedding(self, counts: Counts, other: Counts) -> Reals:
-        along, across = self.row.embedding(counts[0], other[0]), self.span.embedding(counts[1], other[1])
+        along, across = self.row.embedding(counts[0], other[0]), ALONG_SPAN.embedding(counts[1], other[1])
         return np.asarray(np.kron(along, across))
 
     def resized(self, design: Any, counts: Counts, stations: Stations | None) -> Any:
@@ -182,7 +175,7 @@ class SpanLaw(ResizableLaw):
 def _nearest_numbers(law: Law, count: int, stations: Stations | None) -> Reals:
     """Control points (count,) of the law that is nearest to another, or its values at stations."""
     if stations is not None:
-        return np.array(sampled_at(law, stations).values)
+        return np.real(Span(np.array(stations.span)).values(law))
     if stations_of(law) is None and len(law_points(law)) == count:
         return np.array(law_points(law))
     values = np.real(Span(COMPARED_PLACES).values(law))
@@ -212,3 +205,169 @@ def _has_sections(design: Any) -> bool:
     except DesignError:
         return False
     return True
+
+
+CHANNEL_CURVES = ("leading_edge", "trailing_edge", "hub", "shroud")
+"""the four curves of a channel"""
+FEWEST_ON_WALL = 5
+"""points of a wall at least: its ends, and three beside the blade (design/matching_constants.md)"""
+FINE_PLACES: Reals = np.linspace(0.0, 1.0, 2001)
+"""parameters of a curve between which it is taken as linear, within 1e-7 of its length"""
+
+
+@final
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ChannelCurves(ResizableLaw):
+    """The four curves of a channel, which share its corners."""
+
+    degree: int
+    """highest degree of the curves"""
+    holds_corners: bool = True
+    along_span: tuple[int, ...] = (0, 1)
+
+    def counts_of(self, design: Any) -> Counts:
+        walls = {"hub": 2, "shroud": 2}
+        return tuple(len(getattr(design.channel, name)) + walls.get(name, 0) for name in CHANNEL_CURVES)
+
+    def paths(self, design: Any) -> list[str]:
+        curves = [(name, len(getattr(design.channel, name))) for name in CHANNEL_CURVES]
+        return [f"channel.{name}[{i}].{axis}" for name, count in curves for i in range(count) for axis in "xr"]
+
+    def embedding(self, counts: Counts, other: Counts) -> Reals:
+        found = np.zeros((sum(counts) - 4, sum(other) - 4))
+        for curve, places in enumerate(zip(_places(counts), _places(other), strict=True)):
+            found[np.ix_(*places)] = _curve_embedding(counts[curve], other[curve], self.degree)
+        return np.asarray(np.kron(found, np.eye(2)))
+
+    def resized(self, design: Any, counts: Counts, stations: Stations | None) -> Any:  # noqa: ARG002 - the contract's
+        if counts == self.counts_of(design):
+            return design.channel
+        curves = _split(self.nearest_numbers(design, counts).reshape(-1, 2), counts)
+        points = (tuple(Point(*row) for row in rows.tolist()) for rows in curves)
+        return replace(design.channel, **dict(zip(CHANNEL_CURVES, points, strict=True)))
+
+
+def _split(rows: NDArray[Any], counts: Counts) -> list[NDArray[Any]]:
+    """The rows of each curve among those of a channel's points: edges, then hub and shroud without the corners."""
+    return np.split(rows, np.cumsum([counts[0], counts[1], counts[2] - 2]))
+
+
+def _places(counts: Counts) -> list[list[int]]:
+    """The places of each curve's points among those of a channel: a wall's ends are the edges' ends."""
+    leading, trailing, hub, shroud = (each.tolist() for each in _split(np.arange(sum(counts) - 4), counts))
+    return [leading, trailing, [leading[0], *hub, trailing[0]], [leading[-1], *shroud, trailing[-1]]]
+
+
+def _curve_embedding(count: int, other: int, highest: int) -> Reals:
+    """Control points (count, other) of the curves nearest to those of other numbers, between the same ends."""
+    if count == other:
+        return np.eye(count)
+    degrees = [min(each - 1, highest) for each in (count, other)]
+    own, rhs = (
+        basis(uniform_knots(each, degree), degree, COMPARED_PLACES)
+        for each, degree in zip((count, other), degrees, strict=True)
+    )
+    found = np.zeros((count, other))
+    found[0, 0] = found[-1, -1] = 1.0
+    found[1:-1] = np.linalg.lstsq(own[:, 1:-1], rhs - own @ found, rcond=None)[0]
+    return found
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CurvePoints(ResizableLaw):
+    """The points of an edge curve, at even steps of the coordinate in which they slide on it; the other is free."""
+
+    axes: str
+    """coordinates of its points that are free"""
+    along_span: tuple[int, ...] = (0,)
+
+    def counts_of(self, design: Any) -> Counts:
+        return (len(value_at(design, self.name).points),)
+
+    def paths(self, design: Any) -> list[str]:
+        return [f"{self.name}.points[{i}].{axis}" for i in range(*self.counts_of(design)) for axis in self.axes]
+
+    def embedding(self, counts: Counts, other: Counts) -> Reals:
+        own, known = self.places(*counts), self.places(*other)
+        return np.asarray(np.kron(CubicSpline(known, np.eye(len(known)))(own), np.eye(len(self.axes))))
+
+    def resized(self, design: Any, counts: Counts, stations: Stations | None) -> Any:  # noqa: ARG002 - the contract's
+        curve = value_at(design, self.name)
+        if self.counts_of(design) == counts:
+            return curve
+        line = np.real(curve.line(1.0).values(FINE_PLACES))
+        way = self.way(line)
+        order, at = np.argsort(way), way[0] + self.places(*counts) * (way[-1] - way[0])
+        rows = np.stack([np.interp(at, way[order], axis[order]) for axis in line.T], axis=-1)
+        return replace(curve, points=tuple(Point(*row) for row in rows.tolist()))
+
+    def way(self, line: Reals) -> Reals:
+        """The coordinate (n,) along places (n, 2) of the curve in which its points stand at their places."""
+        return np.asarray(line[:, 1 - "xr".index(self.axes)])
+
+    def places(self, count: int) -> Reals:
+        """Places (count,) of its points, from 0 to 1."""
+        return np.linspace(0.0, 1.0, count)
+
+
+@final
+@dataclass(frozen=True, kw_only=True, eq=False)
+class WallPoints(CurvePoints):
+    """The points of hub or shroud: two ends, and others at even steps of its length past both edges."""
+
+    stations: tuple[float, ...]
+    """of its points, fractions of its length"""
+    holds_corners: bool = True
+    along_span: tuple[int, ...] = ()
+
+    def way(self, line: Reals) -> Reals:
+        return np.asarray(cumulative_length(line))
+
+    def places(self, count: int) -> Reals:
+        if count == len(self.stations):
+            return np.array(self.stations)
+        return np.array([0.0, *np.linspace(self.stations[1], self.stations[-2], count - 2), 1.0])
+
+
+@final
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SegmentPoints(ResizableLaw):
+    """The inner control points of a segment of an airfoil that stands alone, between ends that its joints give."""
+
+    sign: float
+    """1 on the upper side, -1 on the lower one"""
+    held: Counts
+    """control points that its joints give at its ends"""
+
+    def counts_of(self, design: Any) -> Counts:
+        return (len(value_at(design, self.name).abscissas),)
+
+    def paths(self, design: Any) -> list[str]:
+        inner = range(*self.counts_of(design))
+        return [f"{self.name}.{axis}[{i}]" for i in inner for axis in ("abscissas", "ordinates")]
+
+    def _basis(self, count: int) -> tuple[Reals, slice]:
+        """Values (m, n) of the basis functions of all control points, and which of these are so many inner ones."""
+        rows = basis(segment_knots(count + sum(self.held)), DEGREE, COMPARED_PLACES)
+        return rows, slice(self.held[0], self.held[0] + count)
+
+    def embedding(self, counts: Counts, other: Counts) -> Reals:
+        (own, inner), (known, others) = self._basis(*counts), self._basis(*other)
+        return np.asarray(np.kron(np.linalg.lstsq(own[:, inner], known[:, others], rcond=None)[0], np.eye(2)))
+
+    def offset(self, design: Any, counts: Counts, other: Counts) -> Reals:
+        number, segment = SEGMENTS.index(self.name.rpartition(".")[2]), value_at(design, self.name)
+        joints = side_joints(design.section, self.sign, SINGLE_SECTION)[number : number + 2]
+        distance = length(joints[1].point - joints[0].point)
+        scales = (np.array([each or 1.0]) for each in (segment.front_scale, segment.rear_scale))
+        first, last = (joint.end(distance, scale) for joint, scale in zip(joints, scales, strict=True))
+        ends = [control_points(first, np.zeros((1, *each, 2)), last)[0] for each in (counts, other)]
+        (own, inner), (known, _) = self._basis(*counts), self._basis(*other)
+        return np.linalg.lstsq(own[:, inner], known @ ends[1] - own @ ends[0], rcond=None)[0].ravel()
+
+    def resized(self, design: Any, counts: Counts, stations: Stations | None) -> Any:  # noqa: ARG002 - the contract's
+        segment = value_at(design, self.name)
+        if counts == self.counts_of(design):
+            return segment
+        points = self.nearest_numbers(design, counts).reshape(-1, 2)
+        return replace(segment, abscissas=tuple(points[:, 0].tolist()), ordinates=tuple(points[:, 1].tolist()))

@@ -22,9 +22,13 @@ from bladewright.fitting.matching.search import (
     searched,
     without_false_outliers,
 )
-from bladewright.fitting.model_selection.clustering import nearest_by_clustering
-from bladewright.fitting.model_selection.edges import from_other_edges, nearest_from_other_edges, with_sharp_edges
 from bladewright.fitting.model_selection.elimination import reweighted
+from bladewright.fitting.model_selection.other_minima import (
+    from_other_edges,
+    nearest_by_clustering,
+    nearest_from_other_edges,
+    with_sharp_edges,
+)
 from bladewright.fitting.model_selection.structure import Structure, reshaped, structure_of
 from bladewright.fitting.model_selection.structure_search import (
     ENOUGH,
@@ -43,12 +47,10 @@ QUICK_POINTS, SEVERAL_POINTS, THOROUGH_POINTS = 1000, 4000, 12_000
 WEAK_REGULARISATION = 0.1
 """factor of the regularisation where a match is only improved (design/matching_constants.md)"""
 CORNERS_HELD_NOTE = "the radii of the channel's corners are read off the points, held, and not counted"
-"""note where the channel's corners are read off the points"""
 HELD_NOTE = "the points do not determine {}, which are held where a smooth design has them"
-"""note where parameters are held"""
 DETERMINED_MARGIN, MOST_HOLDINGS = 1.5, 3
-"""standard deviations that a determined direction of the parameters has in its own scale at least, more than one as the
-search that follows changes the residuals; and how often parameters are held at most (design/matching_constants.md)."""
+"""standard deviations that a determined direction of the parameters has in its own scale at least, and how often
+parameters are held at most (design/matching_constants.md)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -69,10 +71,7 @@ class RichMatch:
 def selected_match(
     task: Task, first: Design, target: MatchTarget, *, like: Structure | None, guessed: bool
 ) -> tuple[Match, str]:
-    """The match, and why it ends where no target is met.
-
-    `first` is a first design, a guess or a start; `like` is the structure of a given design.
-    """
+    """The match from a first design or a start, and why it misses what is asked; `like` is the structure of another."""
     return reduced_match(rich_match(task, first, target, like=like, guessed=guessed), target)
 
 
@@ -95,7 +94,7 @@ def rich_match(task: Task, first: Design, target: MatchTarget, *, like: Structur
         found = replace(search, task=few.trusting(found), predictions=1).well_predicted(found)
         search = replace(search, first=found.design)
     near = target.open and found.maximum < NEAR * found.model.chord
-    rich = found if near else search.rich(found, target, sampled=target.parameters is None)
+    rich = found if near else search.rich(found, target)
     if len(rich.rows) < len(several.points):
         # no richer one has a shape, or none is needed: the first match, of few points, stands
         rich = evaluated(several, rich.design, noise=rich.rms)

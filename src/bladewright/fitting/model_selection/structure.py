@@ -1,6 +1,6 @@
-"""How many control points the laws and curves of a design have, apart from their values."""
+"""How many control points the laws and curves of a design have, apart from their values, and designs with more."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import singledispatch
 from itertools import pairwise
@@ -12,26 +12,26 @@ from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Design, Stations
-from bladewright.errors import FitError
+from bladewright.errors import DesignError, FitError
 from bladewright.fitting.free_parameters import EDGES, WALLS, sliding_coordinate
-from bladewright.fitting.model_selection.curves import (
-    FEWEST_ON_WALL,
-    ChannelCurves,
-    CurvePoints,
-    SegmentPoints,
-    WallPoints,
-)
+from bladewright.fitting.matching.noise import EXACT
 from bladewright.fitting.model_selection.laws import (
-    ALONG_SPAN,
     COMPARED_PLACES,
+    FEWEST_ON_WALL,
     MOST_CHORD,
-    ONE,
+    MOST_CURVE,
+    MOST_SPAN,
+    ChannelCurves,
     Counts,
+    CurvePoints,
     HeightsLaw,
     ResizableLaw,
     Row,
+    SegmentPoints,
     SpanLaw,
+    WallPoints,
 )
+from bladewright.fitting.models.model import model_of
 from bladewright.fitting.models.sectioned import SINGLE_SECTION
 from bladewright.numerics.elementary import cumulative_length
 from bladewright.nurbs.basis import Reals
@@ -39,10 +39,11 @@ from bladewright.section.camber_angle import CamberAngle
 from bladewright.section.curvature_meanline import CurvatureMeanline
 from bladewright.section.laws import named_laws
 from bladewright.section.segmented.part import SegmentedSection
+from bladewright.section.segmented.segment import DEGREE
 from bladewright.section.segmented.skin import SEGMENTS
 from bladewright.section.suction_pressure.part import SuctionPressure
 from bladewright.section.unified import UnifiedSection
-from bladewright.section.unified_limits import THICKNESSES, WEIGHTS
+from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNESSES, WEIGHTS
 from bladewright.section.unified_sides import sample_places
 
 FEWEST_THICKNESSES = 3
@@ -54,9 +55,8 @@ MOST_SAMPLES = 60
 POSITIONS = ("leading_edge_theta", "leading_edge_y")
 """fields of the position of the leading edge"""
 RICH_CHORDWISE = {2: 24, 3: 9}
-"""control points along the chord of a rich structure of the unified family, by dimension. Nine have six spans, whose
-knots include those of one, two and three: cubic laws of 4, 5 and 6 control points are special cases of theirs
-(design/matching.md)."""
+"""control points along the chord of a rich structure of the unified family, by dimension: nine hold cubic laws of 4, 5
+and 6 (design/matching.md)"""
 RICH_SPAN = {"thickness": 6, "radius": 4, "": 9}
 """control points along the span of its laws, by what their names say: six hold cubic laws of 4, nine of 4, 5 and 6."""
 RICH_CHANNEL = (9, 9, 6, 6)
@@ -112,12 +112,12 @@ def _(part: CurvatureMeanline) -> dict[str, Row]:
 
 @chordwise_rows.register
 def _(part: SuctionPressure) -> dict[str, Row]:
-    heights = {name: getattr(part, f"{name}_heights") for name in ("suction", "pressure")}
-    return {
-        f"{name}_heights": Row(fewest=1, most=MOST_CHORD, held=(2, 2))
-        for name, row in heights.items()
-        if row and not (getattr(part, f"{name}_places") or getattr(part, f"{name}_knots"))
-    }
+    found = {}
+    for side in ("suction", "pressure"):
+        given = getattr(part, f"{side}_places") or getattr(part, f"{side}_knots")
+        if getattr(part, f"{side}_heights") and not given:
+            found[f"{side}_heights"] = Row(fewest=1, most=MOST_CHORD, held=(2, 2))
+    return found
 
 
 @singledispatch
@@ -128,30 +128,30 @@ def resizable_curves(design: Any) -> list[ResizableLaw]:  # noqa: ARG001 - most 
 
 @resizable_curves.register
 def _(design: UnifiedBlade) -> list[ResizableLaw]:
-    return [ChannelCurves(name="channel", rich=RICH_CHANNEL, degree=design.channel.degree)]
+    fewest, most = (2,) * 4, (MOST_CURVE,) * 4
+    return [ChannelCurves(name="channel", fewest=fewest, most=most, rich=RICH_CHANNEL, degree=design.channel.degree)]
 
 
 @resizable_curves.register
 def _(design: SectionedBlade) -> list[ResizableLaw]:
-    found: list[ResizableLaw] = []
+    found, most, rich = list[ResizableLaw](), (MOST_CURVE,), (RICH_CURVE,)
     for edge in EDGES:
         if isinstance(getattr(design, edge), ThroughPoints):
             axes = "x" if sliding_coordinate(design, edge) == "r" else "r"
-            found.append(CurvePoints(name=edge, rich=(RICH_CURVE,), axes=axes))
+            found.append(CurvePoints(name=edge, fewest=(2,), most=most, rich=rich, axes=axes))
     for wall in WALLS:
         curve = getattr(design.flow_path, wall)
         if isinstance(curve, ThroughPoints) and len(curve.points) >= FEWEST_ON_WALL:
-            way = cumulative_length(np.real(np.array([tuple(each) for each in curve.points])))
-            stations = tuple((way / way[-1]).tolist())
-            found.append(WallPoints(name=f"flow_path.{wall}", rich=(RICH_CURVE,), axes="xr", stations=stations))
+            way = cumulative_length(np.real(np.array(curve.points)))
+            name, fewest, stations = f"flow_path.{wall}", (FEWEST_ON_WALL,), tuple((way / way[-1]).tolist())
+            found.append(WallPoints(name=name, fewest=fewest, most=most, rich=rich, axes="xr", stations=stations))
     return found
 
 
 @resizable_curves.register
 def _(design: SegmentedSection) -> list[ResizableLaw]:
     """The inner control points of the segments, but for those whose skin morphs."""
-    found: list[ResizableLaw] = []
-    part = design.section
+    found, part, most, rich = list[ResizableLaw](), design.section, (MOST_CHORD,), (RICH_SEGMENT,)
     for sign, side in ((1.0, "upper"), (-1.0, "lower")):
         given = getattr(part, side)
         joints = [0 if part.nose is None else part.nose.continuity, given.front_joint.continuity]
@@ -159,7 +159,8 @@ def _(design: SegmentedSection) -> list[ResizableLaw]:
         for segment, (front, rear) in zip(SEGMENTS, pairwise(joints), strict=True):
             if getattr(given, segment).skin is None:
                 name, held = f"section.{side}.{segment}", (1 + front, 1 + rear)
-                found.append(SegmentPoints(name=name, rich=(RICH_SEGMENT,), sign=sign, held=held))
+                fewest = (max(1, DEGREE + 1 - sum(held)),)
+                found.append(SegmentPoints(name=name, fewest=fewest, most=most, rich=rich, sign=sign, held=held))
     return found
 
 
@@ -171,17 +172,18 @@ def sized_laws(design: Any) -> list[ResizableLaw]:
         )
     part = getattr(design, "section", design)
     stem, rich = ("", RICH_CHORDWISE) if part is design else ("section.", RICH_SECTION)
-    rows, span = chordwise_rows(part), ALONG_SPAN if design.dimension == 3 else ONE
-    found: list[ResizableLaw] = []
+    rows, most_span, found = chordwise_rows(part), MOST_SPAN if design.dimension == 3 else 1, list[ResizableLaw]()
     for name, row in rows.items():
-        numbers = rich[design.dimension], _rich_span(stem, name)
-        # of the control points of a second derivative only the ratios count, so that the largest is held
+        fewest, most = (0 if row.optional else row.fewest, 1), (row.most, most_span)
+        numbers, path = (rich[design.dimension], _rich_span(stem, name)), f"{stem}{name}"
         kind = HeightsLaw if name.endswith("_heights") else SpanLaw
-        found.append(kind(name=f"{stem}{name}", rich=numbers, row=row, span=span, holds_corners=name == "curvature"))
+        # of the control points of a second derivative only the ratios count, so that the largest is held
+        held = name == "curvature"
+        found.append(kind(name=path, fewest=fewest, most=most, rich=numbers, row=row, holds_corners=held))
     for path, _ in named_laws(design) if design.dimension == 3 else ():
         in_row = path.removeprefix(stem).partition("[")[0] in rows
         if (path.startswith(stem) or path in POSITIONS) and not (in_row or path.startswith(WEIGHTS)):
-            found.append(SpanLaw(name=path, rich=(1, _rich_span(stem, path))))
+            found.append(SpanLaw(name=path, fewest=(1, 1), most=(1, MOST_SPAN), rich=(1, _rich_span(stem, path))))
     return [*found, *resizable_curves(design)]
 
 
@@ -243,3 +245,147 @@ def reshaped(design: Design, structure: Structure) -> Any:
     for law in laws:
         found = law.settled(design, found)
     return found
+
+
+FIRST_ANGLES, FIRST_TANGENTS, FIRST_RADII = 4, 3, 2
+"""control points along the span of a first blade's angles and position, tangents and radii: free enough to find its
+edges (design/matching_constants.md)"""
+FIRST_SECTION = Structure(counts=dict.fromkeys(THICKNESSES, (6, 1)), samples=16)
+"""of a section with which a match begins"""
+FIRST_BLADE = Structure(
+    counts={
+        **dict.fromkeys((*ANGLES, *POSITIONS), (1, FIRST_ANGLES)),
+        **dict.fromkeys(TANGENTS, (1, FIRST_TANGENTS)),
+        **dict.fromkeys(RADII, (1, FIRST_RADII)),
+        **dict.fromkeys(THICKNESSES, (6, 3)),
+        "channel": (4, 5, 4, 4),
+    },
+    samples=16,
+)
+"""of a twisted and swept blade, with which a match begins (design/matching_constants.md)"""
+
+
+def _with_each(structure: Structure, laws: Iterable[ResizableLaw], count: Callable[..., int]) -> Structure:
+    """The structure with `count` control points of laws, by the law, which of its numbers it is, and that number."""
+    counts = {law.name: tuple(count(law, i, n) for i, n in enumerate(structure.counts[law.name])) for law in laws}
+    return replace(structure, counts={**structure.counts, **counts})
+
+
+def richest(design: Design, *, sampled: bool = False) -> Structure:
+    """The structure with all the control points that a match may begin with.
+
+    Where it is to be `sampled`, it adds none along the chord that the design's samples do not determine
+    (design/matching.md).
+    """
+    own = structure_of(design)
+
+    def rich(law: ResizableLaw, place: int, count: int) -> int:
+        most = _determined(own, law, place) if sampled else law.most[place]
+        return max(count, min(law.rich[place], most))
+
+    return _with_each(own, resizable_laws(design), rich)
+
+
+def _determined(own: Structure, law: ResizableLaw, place: int) -> int:
+    """The most control points of a law that a structure's samples determine, where it is sampled."""
+    sampled = own.samples and law.name in THICKNESSES and place == 0
+    return own.samples - SPARE_SAMPLES if sampled else law.most[place]
+
+
+THINNER_EDGES, MOST_THINNINGS = 0.7, 12
+"""ratio by which the thickness beside the edges is reduced, and how often at most (design/matching_constants.md)"""
+
+
+def with_feasible_edges(design: Design) -> Design:
+    """The design, or one with thinner edges where given values leave it no shape; the last where none has.
+
+    A camber that is turned away from the points may leave the third control points of the sides outside the edges.
+    """
+    if not isinstance(design, UnifiedSection | UnifiedBlade):
+        return design
+    for _ in range(MOST_THINNINGS):
+        if _has_shape(design):
+            break
+        ends = tuple(f"{name}[{place}]" for name in THICKNESSES for place in (0, len(getattr(design, name)) - 1))
+        values = design.parameters().items()
+        design = design.changed({path: THINNER_EDGES * value for path, value in values if path.startswith(ends)})
+    return design
+
+
+def widened_where_feasible(design: Design, structure: Structure) -> Design:
+    """The design of a wider structure, or where that has no shape, with those laws wider that leave it one.
+
+    The nearest laws of other control points may fold stream surfaces, or part an edge from a wall; each is tried alone.
+    """
+    whole = with_feasible_edges(reshaped(design, structure))
+    if _has_shape(whole):
+        return whole
+    own = structure_of(design)
+    for law in resizable_laws(design):
+        wider = own.resized(law.name, structure.counts[law.name]).with_samples(structure.samples)
+        own = wider if _has_shape(reshaped(design, wider)) else own
+    return reshaped(design, own)
+
+
+def _has_shape(design: Design) -> bool:
+    try:
+        with np.errstate(all="ignore"):
+            return model_of(design, EXACT).shape(design).finite
+    except DesignError:
+        return False
+
+
+SHARES = (1.0, 0.8, 0.6, 0.4, 0.2, 0.0)
+"""shares of a rich structure's further control points tried where points are few (design/matching_constants.md)"""
+POINTS_PER_PARAMETER = 2
+"""points for each parameter of a rich structure at least, also of published profiles (design/matching_constants.md)"""
+
+
+def rich_structure(
+    design: Design, free: Collection[str], points: int, rows: int = MOST_SPAN, *, sampled: bool = False
+) -> Structure:
+    """A structure with more control points in every law than a match of so many points is likely to need.
+
+    Along the span it has no more of them than `rows` of points. Laws of which nothing is `free` keep theirs.
+    """
+    return _towards(richest(design, sampled=sampled), design, free, points, rows)
+
+
+def wider_structure(
+    design: Design, free: Collection[str], points: int, rows: int = MOST_SPAN, *, slim: bool = False
+) -> Structure:
+    """A structure with a third as many control points again in every law of a design, and a rich one at least.
+
+    Along the span it has no more of them than `rows` of points, and along the chord no more than the design's samples
+    determine, unless it has as many (design/matching.md). Of a structure that is `slim`, which has lost what it does
+    not need, half as many again and no more.
+    """
+    own = structure_of(design)
+    least, share = (own, 2) if slim else (richest(design), 3)
+
+    def wider(law: ResizableLaw, place: int, count: int) -> int:
+        determined = _determined(own, law, place)
+        most = determined if count < determined else law.most[place]
+        return max(least.counts[law.name][place], min(count + max(1, count // share), most))
+
+    return _towards(_with_each(own, resizable_laws(design), wider), design, free, points, rows)
+
+
+def _towards(whole: Structure, design: Design, free: Collection[str], points: int, rows: int) -> Structure:
+    """A whole structure, or as large a share of what it has more than a design as points, and rows, allow."""
+
+    def within_rows(law: ResizableLaw, place: int, count: int) -> int:
+        return max(min(count, rows), law.fewest[place]) if place in law.along_span else count
+
+    laws = resizable_laws(design)
+    whole, own = (_with_each(each, laws, within_rows) for each in (whole, structure_of(design)))
+    freed = [law for law in laws if not set(free).isdisjoint(law.paths(design) or free)]
+    for share in SHARES:
+
+        def towards(law: ResizableLaw, place: int, count: int, share: float = share) -> int:
+            return count + round(share * (whole.counts[law.name][place] - count))
+
+        rich = _with_each(own, freed, towards).with_samples(own.samples)
+        if len(reshaped(design, rich).parameters()) * POINTS_PER_PARAMETER <= points:
+            break
+    return rich

@@ -15,6 +15,7 @@ import numpy as np
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, MatchTarget, trusted_distance
+from bladewright.fitting.matching.footpoints import Footpoints, part_of
 from bladewright.fitting.matching.noise import EXACT
 from bladewright.fitting.matching.search import (
     QUICK_ROUNDS,
@@ -37,13 +38,13 @@ from bladewright.fitting.model_selection.elimination import (
     eliminated,
     reweighted,
 )
-from bladewright.fitting.model_selection.reshaping import (
+from bladewright.fitting.model_selection.laws import MOST_SPAN
+from bladewright.fitting.model_selection.structure import (
+    reshaped,
     rich_structure,
-    rows_shown,
     widened_where_feasible,
     wider_structure,
 )
-from bladewright.fitting.model_selection.structure import reshaped
 from bladewright.nurbs.basis import Reals
 
 REFUSED_MARGIN = 6.0
@@ -51,34 +52,27 @@ REFUSED_MARGIN = 6.0
 NOISE_REASON = "what is left is the cloud's own noise, {:.2g} mm: more control points would follow it"
 TRIED_PARAMETERS, MOST_TRIED = 100, 4
 """parameters of the structures of one size that are searched, in all, as predictions are linear; and structures at most
-(`MOST_TRIED`), so that one can be built. With one of 22 the ORC nozzle is met by 1.68e-3 of the chord, not 1.50e-3;
-with half of either LS89 is met by 1.0e-3, not 8.1e-4 (design/matching_constants.md)."""
+(`MOST_TRIED`), so that one can be built (design/matching_constants.md)"""
 STAGES = 3
 """times that structures are predicted anew about the match that they led to (design/matching_constants.md)"""
 NEAR_RICH = 1.25
 """largest distance, of a rich match's, of one of which nothing is asked (design/matching_constants.md)"""
 NOISE_QUANTILE = 1.645
-"""standard errors by which a misfit may pass the noise, which one of pure noise does once in twenty times
-(design/matching_constants.md)."""
+"""standard errors by which a misfit may pass the noise, as once in twenty by chance (design/matching_constants.md)"""
 TO_SPARE = 0.8
 """share of the largest distance that is asked for which a rich match reaches, so that control points can be left out,
-and which is predicted of matches of which nothing is asked, as predictions are linear. By 0.05 mm Rotor 67 takes 157,
-214 and 246 parameters by three roundings where a rich match just keeps it, 149, 167 and 213 with this
-(design/matching.md)."""
+and which is predicted of matches of which nothing is asked, as predictions are linear (design/matching.md)"""
 NEAR, ENOUGH = 0.5 * EXACT, TO_SPARE * NEAR_EVERYWHERE
 """largest distances, of the chord, that matches are predicted to have of which nothing is asked: where they can be
-exact, and else. Exact clouds are held to theirs at their points, as between them distances were up to 2.1 times as
-large (design/matching.md)."""
+exact, and else (design/matching.md)"""
 WORTHWHILE, MOST_PREDICTIONS = 0.9, 8
 """share of the parameters of a match that a structure may have with which a search for fewer goes on; and matches about
 which structures are predicted for one aim at most (design/matching_constants.md)"""
 SETTLED_RICH = 0.9
-"""ratio of the misfits of two rounds above which the search of a rich structure has settled, and of two rich structures
-above which neither is near everywhere (design/matching.md)"""
+"""ratio of misfits above which a rich search has settled, and a richer structure gains nothing (design/matching.md)"""
 EXPLAINED = 0.25
 """share of the misfit that a linear model of a rich structure leaves at most where its predictions are trusted before
-it is searched: with half, Rotor 67 as an example ended 5.5e-4 of the chord off, not 1.1e-4; where they are always
-trusted, four examples in 23 were missed by 4.9e-4 and more (design/matching.md)"""
+it is searched (design/matching.md)"""
 RICHER_GAIN = 0.6
 """ratio of the misfits of two rich structures above which a richer one is of no use: a third as many control points
 again bring a cubic spline nearer by (3/4)^4, a third, half as many by a fifth (de Boor 1978, chapter 12)."""
@@ -96,21 +90,18 @@ class StructureSearch:
     predictions: int = MOST_PREDICTIONS
     """matches about which structures are predicted at most"""
 
-    def rich(self, match: Match, target: MatchTarget, *, sampled: bool = False) -> Match:
-        """The match of a rich structure, and of ever richer ones until one is near enough or comes hardly nearer.
-
-        Where it is to be `sampled`, the first has no more control points along the chord than its samples determine. In
-        space each begins as it is predicted, without what it does not need; where points are exact or something is
-        asked, a structure loses that before it grows as well.
-        """
+    def rich(self, match: Match, target: MatchTarget) -> Match:
+        """The match of a rich structure, and of ever richer ones until one is near enough or comes hardly nearer."""
         found, least = match, target.tolerance or NEAR * match.model.chord
+        # the structure of a design, or one of fewer parameters, is sought from more than its samples determine
+        first = partial(rich_structure, sampled=target.open or target.tolerance is not None)
         search = partial(searched, min_reduction=ROUGH_REDUCTION, settled=SETTLED_RICH, fading=True)
         shown = len(self.task.points), self._rows_shown(match)
         while found is match or (has_systematic_misfit(found) and not self._is_enough(found, target)):
             try:
+                # in space structures begin without what they are predicted not to need; a slim one grows without it too
                 slim = self.task.dimension == 3 and (not target.open or is_exact(found))
                 about = self._without_surplus(found) if slim and found is not match else found.design
-                first = partial(rich_structure, sampled=sampled)
                 widened = first if found is match else partial(wider_structure, slim=slim)
                 design = widened_where_feasible(about, widened(about, self.task.free(about), *shown))
                 if self.task.dimension == 3:
@@ -139,10 +130,7 @@ class StructureSearch:
         return target.tolerance is None or rich.maximum <= TO_SPARE * target.tolerance
 
     def _without_surplus(self, rich: Match, most: float = np.inf) -> Design:
-        """The design of the fewest control points that is predicted to leave hardly more than a rich match.
-
-        The rich one itself, where that is predicted to leave more than `most` rms, of the chord.
-        """
+        """The design of the fewest control points predicted to leave hardly more than a rich match, and `most` rms."""
         candidates = eliminated(model := self._model(rich), 0)
         chosen = [each for each in candidates if each.rms <= min(NEAR_RICH * candidates[0].rms, most)]
         start = self._start(model, chosen[-1]) if chosen else None
@@ -218,7 +206,7 @@ class StructureSearch:
         def predicted(model: LinearModel) -> list[Prediction]:
             return [each for each in eliminated(model, 0, relative) if each.largest <= PREDICTED * relative]
 
-        def reweighted_search(model: LinearModel, prediction: Prediction) -> Match | None:
+        def search(model: LinearModel, prediction: Prediction) -> Match | None:
             start = self._start(model, prediction)
             return start and nearest_to_tolerance(self.task, start, prediction.weights, tolerance)
 
@@ -227,9 +215,7 @@ class StructureSearch:
 
         found, nearest = rich if kept(rich) and not is_refused(rich) else None, None
         if kept(rich) or has_systematic_misfit(rich):
-            found, nearest = self._fewest(
-                rich, found, rounds=1, predicted=predicted, search=reweighted_search, kept=kept
-            )
+            found, nearest = self._fewest(rich, found, rounds=1, predicted=predicted, search=search, kept=kept)
         if found is not None:
             return found, ""
         nearest = min(filter(None, (rich, nearest)), key=lambda each: each.maximum)
@@ -249,11 +235,9 @@ class StructureSearch:
     ) -> tuple[Match | None, Match | None]:
         """The match of fewest parameters found that is `kept`, and the nearest of those that are not.
 
-        Each structure is `predicted` to be kept about the last match, with more control points in every law and after
-        so many `rounds`, as a linear model about a rich match does not reach as far as narrow structures lie. Where its
-        `search` leads no nearer, or nothing is predicted there that is wider than what has failed, one between this and
-        the last that did is searched. A rich match that is kept is the first of them, so that none is searched that
-        would save little.
+        Each structure is `predicted` about the last match, widened and searched for some `rounds`, as a linear model
+        about a rich match does not reach as far as narrow structures lie. Where its `search` leads no nearer, or
+        nothing wider than what has failed is predicted, one between this and the last that was kept is searched.
         """
         nearest, least, about, failed, narrowest = None, np.inf, rich, 0, True
         for _ in range(self.predictions):
@@ -293,10 +277,7 @@ class StructureSearch:
         return rows_shown(match.state.footpoints.part(match.rows))
 
     def _widened(self, match: Match, rounds: int = 0) -> Match:
-        """A match with more control points in every law after some rounds, or the same where that leaves it no shape.
-
-        The nearest laws of more control points may be several times as far off (design/matching.md).
-        """
+        """A match with more control points in every law after some rounds, or as it is where that has no shape."""
         try:
             free, rows = self.task.free(match.design), self._rows_shown(match)
             design = reshaped(match.design, wider_structure(match.design, free, len(self.task.points), rows))
@@ -313,10 +294,7 @@ class StructureSearch:
         return None
 
     def _start(self, model: LinearModel, prediction: Prediction) -> Match | None:
-        """The predicted design or the nearest to the rich match; the first design in its structure if none has a shape.
-
-        Predictions that go too far are no nearer than the rich match.
-        """
+        """The predicted design, that nearest to the rich match, or the first in its structure if none has a shape."""
         designs = (
             partial(model.designed, prediction),
             partial(model.designed, replace(prediction, change=np.zeros_like(prediction.change))),
@@ -324,6 +302,7 @@ class StructureSearch:
         )
         found: list[Match] = []
         for design in designs:
+            # predictions that go too far are no nearer than the rich match
             if found and (design is designs[-1] or found[0].misfit < LARGEST_PREDICTED * prediction.rms):
                 break
             with suppress(DesignError, FitError):
@@ -334,8 +313,7 @@ class StructureSearch:
 REWEIGHTED_SEARCHES = 6
 """searches of one structure with other weights at most (design/matching_constants.md)"""
 TOUCHED = 0.05
-"""excess over the tolerance, of it, that the last of these is foreseen to have where they go on: each reduces it by the
-same ratio as the one before (design/matching_constants.md)."""
+"""excess over the tolerance, of it, above which one foreseen of the last ends them (design/matching_constants.md)"""
 
 
 def nearest_to_tolerance(task: Task, start: Match, weights: Reals, tolerance: float) -> Match:
@@ -350,7 +328,38 @@ def nearest_to_tolerance(task: Task, start: Match, weights: Reals, tolerance: fl
             break
         tried.append(last)
         excess = last.maximum - tolerance
+        # each reduces it by the same ratio as the one before
         if excess <= 0.0 or (excess / before) ** left * excess > TOUCHED * tolerance:
             break
         before, weights = excess, reweighted(weights, last.state.footpoints.distances, tolerance)
     return min(tried, key=lambda each: each.maximum)
+
+
+ROWS_PER_KNOT = 3
+"""rows of points for each inner knot of a law along the span, where Ruppert 2002 has four (design/matching.md)"""
+CHORD_PARTS = 10
+"""parts of each side, along the chord, in each of which rows are counted (design/matching_constants.md)"""
+
+
+def rows_shown(feet: Footpoints) -> int:
+    """How many control points along the span points show, by their footpoints (n,).
+
+    A spline's control points are determined where each basis function has a place of its own (Schoenberg and Whitney
+    1953), but between so few it swings: a cubic one has an inner knot for every few rows, and fewer control points than
+    rows, by the median of parts of the chord. Rows that lead across the design's lines show more of the span: knots go
+    by the most equal parts of it that all have points.
+    """
+    order = 4
+    most = ROWS_PER_KNOT * (MOST_SPAN - order)
+    part = feet.side * CHORD_PARTS + part_of(feet.u, CHORD_PARTS)
+    rows = int(np.median([_apart(feet.v[part == number], 1.0 / most) for number in np.unique(part)]))
+    filled = next((n for n in range(most, 1, -1) if len(np.unique(part_of(feet.v, n))) == n), 1)
+    return min(rows - (rows > order), order + filled // ROWS_PER_KNOT)
+
+
+def _apart(places: Reals, distance: float) -> int:
+    """How many of some places (n,) are at least a distance apart, taken from the lowest on."""
+    ordered, count, row = np.sort(places), 0, 0
+    while row < len(ordered):
+        count, row = count + 1, int(np.searchsorted(ordered, ordered[row] + distance))
+    return count
