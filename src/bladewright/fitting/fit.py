@@ -232,7 +232,7 @@ def _check_call(
         raise FitError(f"tolerance is {tolerance!r}: a positive length in metres is needed, such as 5e-5")
     if tolerance is not None and count is not None:
         raise FitError("tolerance and parameters are both given: the one decides the other; leave one out")
-    if count is not None and (isinstance(count, bool) or not least <= count <= 2000):
+    if count is not None and not (np.issubdtype(type(count), np.integer) and least <= count <= 2000):
         raise FitError(f"parameters is {count!r}: a whole number from {least} to 2000 is needed")
 
 
