@@ -126,7 +126,7 @@ class StructureSearch:
     def _is_enough(self, rich: Match, target: MatchTarget) -> bool:
         """Whether a rich match needs no richer one: where nothing is asked, exact points are met more nearly."""
         if target.open:
-            return rich.maximum <= (NEAR if is_exact(rich) else NEAR_EVERYWHERE) * rich.model.chord
+            return rich.maximum <= (NEAR_RICH * NEAR if is_exact(rich) else NEAR_EVERYWHERE) * rich.model.chord
         return target.tolerance is None or rich.maximum <= TO_SPARE * target.tolerance
 
     def _without_surplus(self, rich: Match, most: float = np.inf) -> Design:
