@@ -427,6 +427,10 @@ its place.
 """
 
 
+BY_HAND = "\n## On rows that reach them"
+"""what follows in the file is not made by this script, and stays"""
+
+
 def write_table(path, chosen, own, known):
     """Write what was reached: a table, constants that matter first, and the names of those without effect."""
     rows, still = [], {}
@@ -442,7 +446,9 @@ def write_table(path, chosen, own, known):
     head = HEAD.format(state=own, date=time.strftime("%Y-%m-%d"), matters=MATTERS)
     lines = [each for _, each in sorted(rows, key=lambda each: each[0])]
     quiet = [f"* {of}: {', '.join(names)}" for of, names in still.items()]
-    path.write_text(head + "\n".join(lines) + "\n\n" + STILL + "\n" + "\n".join(quiet) + "\n", encoding="utf-8")
+    _, mark, by_hand = (path.read_text(encoding="utf-8") if path.exists() else "").partition(BY_HAND)
+    made = head + "\n".join(lines) + "\n\n" + STILL + "\n" + "\n".join(quiet) + "\n"
+    path.write_text(made + mark + by_hand, encoding="utf-8")
 
 
 def main():

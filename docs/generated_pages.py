@@ -93,10 +93,11 @@ def python_reference():
 
 
 def _reference(path, own):
-    """A public function, or a class and its members; those that all designs share stand on the pages of keys."""
+    """A public function, or a class and its members; not those that parts of designs and errors share."""
     if not isinstance(own, type):
         return [f".. autofunction:: {path}", ""]
-    inherited = [] if issubclass(own, (Design, Exception)) else ["   :inherited-members:"]
+    # of designs, whose fields stand on the pages of keys, what each kind adds
+    inherited = [] if issubclass(own, (Design, Exception)) else ["   :inherited-members: Part"]
     return [f".. autoclass:: {path}", "   :members:", *inherited, ""]
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from bladewright.errors import FitError
+from bladewright.fitting.families import sections
 from bladewright.fitting.families.kinds import FAMILIES, family_of
 from bladewright.fitting.families.section_shape import section_shape
 from bladewright.fitting.fit import fit
@@ -160,3 +161,9 @@ def test_a_sections_family_has_no_points_in_space():
     for name in FAMILIES:
         with pytest.raises(FitError, match="give x and y alone"):
             fit(points, family=f"{name}-section")
+
+
+def test_a_first_design_that_meets_all_points_is_searched_from(monkeypatch):
+    # of a misfit of nothing all others are infinite multiples
+    monkeypatch.setattr(sections, "misfits", lambda trials: [0.0, *[1.0] * (len(trials) - 1)])
+    assert fit(cloud("naca-2412"), family="profile").passed

@@ -256,6 +256,7 @@ def test_a_blade_in_a_flow_path_is_found_again_from_a_start_and_its_flow_path_st
         (cloud(0, 400), {"parameters": 3}, "parameters is 3"),
         (cloud(0, 400), {"parameters": True}, "parameters is True"),
         (cloud(0, 400), {"parameters": 22.5}, "parameters is 22.5"),
+        (cloud(0, 400), {"parameters": 22.0}, "parameters is 22.0"),
         (cloud(0, 400), {"family": "spline"}, "'spline'"),
         (cloud(0, 400), {"start": STATOR}, "UnifiedSection"),
         (cloud(0, 400), {"axis": "z"}, "axis is 'z'"),

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from bladewright.errors import DesignError
 from bladewright.fitting.assessment.acceptance import MatchTarget
 from bladewright.fitting.model_selection import structure_search
 from bladewright.fitting.model_selection.structure_search import MOST_PREDICTIONS, WORTHWHILE, StructureSearch
@@ -101,6 +102,32 @@ def test_a_richer_structure_that_is_no_nearer_ends_the_search_for_rich_ones(monk
     first = SimpleNamespace(rms=1e-3, maximum=1e-1, design=None, model=SimpleNamespace(chord=1.0))
     found = StructureSearch(task=task, samples=0, first=None).rich(first, MatchTarget(tolerance=1e-5))
     assert (found is searched[0], len(searched)) == (True, 2)
+
+
+@pytest.mark.parametrize(
+    ("target", "sampled"),
+    [
+        (MatchTarget(), True),
+        (MatchTarget(tolerance=1e-5), True),
+        (MatchTarget(parameters=22), False),
+        (MatchTarget(structured=True), False),
+    ],
+)
+def test_a_rich_structure_keeps_to_its_samples_where_neither_number_nor_structure_is_asked(
+    monkeypatch, target, sampled
+):
+    told = []
+
+    def rich_structure(*_, sampled):
+        told.append(sampled)
+        raise DesignError("no shape")
+
+    monkeypatch.setattr(structure_search, "rich_structure", rich_structure)
+    monkeypatch.setattr(StructureSearch, "_rows_shown", lambda *_: 1)
+    task = SimpleNamespace(points=range(100), dimension=2, free=lambda _: ())
+    first = SimpleNamespace(design=None, model=SimpleNamespace(chord=1.0))
+    assert StructureSearch(task=task, samples=0, first=None).rich(first, target) is first
+    assert told == [sampled]
 
 
 @pytest.mark.parametrize(
