@@ -65,8 +65,9 @@ CONFORMAL, UNROLLED = "m'-theta", "m-r*theta"
 """planes of stream surfaces in which sections are tried: the first is that of designs that name none"""
 HALF_SPAN: Reals = np.array([0.5])
 """v at which edges are compared"""
-SAME_RADIUS = 1.02
-"""ratio of the edges' radii below which both planes show the same sections but for their size, within 1 %"""
+SAME_RADIUS, SAME_TURN = 1.02, 0.01
+"""ratio of the edges' radii below which both planes show the same sections but for their size, within 1 %, and angle
+from which theta is counted below which their angles are the same within half a degree [rad]"""
 SECTION_HEADER = DesignHeader(name="section", length_unit="m")
 """of the section in the middle, which is matched on its own"""
 BAND = 0.15
@@ -260,7 +261,7 @@ def _planes(task: Task, found: ClosedChannel, like: Any, middle: SectionShape) -
         return [(CONFORMAL, 0.0)]
     turn = -float((middle.reversed() if found.backwards else middle).start[1])
     own = [(CONFORMAL, 0.0), (UNROLLED, 0.0)]
-    return own if task.bounds else [*own, (UNROLLED, turn)]
+    return own if task.bounds or abs(turn) < SAME_TURN else [*own, (UNROLLED, turn)]
 
 
 def _along_span(shapes: Sequence[SectionShape], part: Any) -> list[Any]:
