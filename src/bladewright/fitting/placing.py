@@ -118,15 +118,15 @@ UPRIGHT_NOTE = (
 
 def turned_with(here: PlacedTask, match: Match) -> PlacedTask:
     """What was sought, with the points turned about x as a match of them is."""
-    if not match.task.turn:
+    if not match.turn:
         return here
-    step = Motion(rotation=about_x(match.task.turn), translation=np.zeros(3))
+    step = Motion(rotation=about_x(match.turn), translation=np.zeros(3))
     linear = getattr(match.design, "arrangement", None) == "linear"
     return replace(
         here,
         motion=step if here.motion is None else composed(step, here.motion),
-        notes=(*here.notes, UPRIGHT_NOTE if linear else TURNED_NOTE.format(np.degrees(match.task.turn))),
-        every=here.every.turned(match.task.turn),
+        notes=(*here.notes, UPRIGHT_NOTE if linear else TURNED_NOTE.format(np.degrees(match.turn))),
+        every=here.every.turned(match.turn),
     )
 
 
