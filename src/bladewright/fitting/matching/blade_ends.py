@@ -159,8 +159,8 @@ def blade_ends_of(
 
 def _outermost(footpoints: Footpoints, rows: NDArray[np.bool_], end: float) -> NDArray[np.bool_]:
     """Which of n points, of those in `rows` (n,), may belong to the row at an end."""
-    # where most parts of the chord show the end, they are the points beside the outermost point of each part: a corner
-    # that has slid past its points is far from its row
+    # where most parts of the chord show the end, the row is the points beside the outermost of each part: a corner that
+    # has slid past its points is far from its row
     away, part = np.abs(footpoints.v - end), part_of(footpoints.u, ROW_PARTS)
     least = np.full(ROW_PARTS, np.inf)
     np.minimum.at(least, part[rows], away[rows])
