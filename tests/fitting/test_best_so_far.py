@@ -1,5 +1,7 @@
 """The nearest designs that searches have reached, where the very nearest cannot be built."""
 
+import gc
+import weakref
 from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
@@ -8,7 +10,9 @@ import numpy as np
 import pytest
 
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.matching.search import BestSoFar
+from bladewright.fitting.free_parameters import FreeParameters
+from bladewright.fitting.matching.best_so_far import BestSoFar
+from bladewright.fitting.matching.search import Task, searched
 from machines import example
 
 SECTION = example("turbine-section")
@@ -73,3 +77,18 @@ def test_where_none_can_be_built_the_cure_is_said(noted) -> None:
     refused = Found(1e-6, REFUSED, 22)
     with pytest.raises(FitError, match=r"cannot be built \(too thick\); give a start design"):
         noted(refused).instead_of(refused, DesignError("too thick"), structured=False)
+
+
+def test_a_match_is_freed_as_soon_as_it_is_let_go() -> None:
+    # a match that leads back to itself would keep its cloud until the cyclic collector runs
+    curves, places = SECTION.build().curves, np.linspace(0.0, 1.0, 20)
+    points = np.concatenate([curves[side](places) for side in ("upper", "lower")])
+    task = Task(points=points, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
+    gc.disable()
+    try:
+        found = weakref.ref(searched(task, SECTION, rounds=1))
+        assert found() is not None
+        del task
+        assert found() is None
+    finally:
+        gc.enable()

@@ -106,7 +106,7 @@ def test_a_section_with_more_control_points_along_the_chord_is_nearly_the_same(d
         assert after.half(place) == pytest.approx(before.half(place), abs=0.02)
     model = LinearModel(searched(task(design), wider, rounds=0), 0)
     # a row that may be left out, too
-    fewest = [each.law.fewest for each in model.laws]
+    fewest = [each.of.fewest for each in model.laws]
     assert model.prediction(fewest).parameters < len(FreeParameters()(design))
     assert len(model.designed(model.prediction(fewest)).parameters()) <= len(design.parameters())
 

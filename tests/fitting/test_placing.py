@@ -99,13 +99,12 @@ def test_a_match_of_points_turned_about_the_axis_says_by_how_much():
     motion = Motion(rotation=about_x(0.2), translation=np.array([0.1, 0.0, 0.3]))
     task = Task(points=motion(given), weights=np.ones(5), free=FreeParameters(), bounds={})
     here = placing.PlacedTask(motion=motion, notes=(), start=None, every=task, shown=task, hidden=None)
-    assert placing.turned_with(here, SimpleNamespace(task=SimpleNamespace(turn=0.0))) is here
-    turned = SimpleNamespace(turn=0.5)
-    there = placing.turned_with(here, SimpleNamespace(task=turned, design=SimpleNamespace(arrangement="annular")))
+    assert placing.turned_with(here, SimpleNamespace(turn=0.0)) is here
+    there = placing.turned_with(here, SimpleNamespace(turn=0.5, design=SimpleNamespace(arrangement="annular")))
     assert there.motion(given) == pytest.approx(there.every.points, abs=1e-15)
     assert there.every.turn == 0.5
     assert "by 28.6479 deg" in there.notes[0]
-    cascade = placing.turned_with(here, SimpleNamespace(task=turned, design=SimpleNamespace(arrangement="linear")))
+    cascade = placing.turned_with(here, SimpleNamespace(turn=0.5, design=SimpleNamespace(arrangement="linear")))
     assert cascade.notes == (placing.UPRIGHT_NOTE,)
     theta, before = (np.arctan2(points[:, 1], points[:, 2]) for points in (there.every.points, task.points))
     assert np.mod(theta - before, 2.0 * np.pi) == pytest.approx(0.5, abs=1e-12)

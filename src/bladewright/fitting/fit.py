@@ -105,7 +105,8 @@ def fit(
     or the call is wrong, and where no design is found. Reference: Agromayor et al. 2021, section 6.
     """
     points, notes = checked_cloud(cloud), tuple[str, ...]()
-    kind, given = named_family(family, points.shape[1], start or like), start is not None or like is not None
+    kind = named_family(family, points.shape[1], like if start is None else start)
+    given = start is not None or like is not None
     target = MatchTarget(tolerance=tolerance, parameters=parameters, structured=parameters is None and given)
     _check_call(points, kind, start, like, target)
     if axis is not None and align:
@@ -206,8 +207,10 @@ def _check_call(
     points: Reals, family: FitFamily | None, start: Design | None, like: Design | None, target: MatchTarget
 ) -> None:
     """Refuse what does not go together; growth knows the curves of a unified blade's own channel alone."""
-    kinds, of_family, other, least = {2: UnifiedSection, 3: UnifiedBlade}, "", "points of the other kind", 14
-    if family is not None:
+    if family is None:
+        kinds, of_family = {2: UnifiedSection, 3: UnifiedBlade}, ""
+        other, least = "points of the other kind", 14
+    else:
         kinds, of_family = {2: family.section, 3: family.blade}, f" of the family {family.name}"
         other, least = "another family", 4
     kind, tolerance, count = kinds[points.shape[1]], target.tolerance, target.parameters

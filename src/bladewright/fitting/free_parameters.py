@@ -36,7 +36,8 @@ def gauge_parameters(design: Design, *, walls: bool = False) -> frozenset[str]:
     coordinate of the points of hub and shroud is held.
     """
     values, section = design.parameters(), getattr(design, "section", None)
-    held, found = [*NOT_IN_CLOUD], _largest_curvature(values)
+    held = [*NOT_IN_CLOUD]
+    found = _largest_curvature(values)
     if isinstance(section, Segmented):
         held += ["section.partition", "section.stagger_angle", "leading_edge_y"]
     if isinstance(section, PointsProfile):
@@ -47,7 +48,9 @@ def gauge_parameters(design: Design, *, walls: bool = False) -> frozenset[str]:
             points, along = (f"channel.{edge}", f"{edge}."), f".{sliding_coordinate(design, edge)}"
             found |= {path for path in values if path.startswith(points) and path.endswith(along)}
     found |= {path for path in values if path.startswith(tuple(held))}
-    return frozenset(found - _across_walls(design) if walls and isinstance(design, SectionedBlade) else found)
+    if walls and isinstance(design, SectionedBlade):
+        found -= _across_walls(design)
+    return frozenset(found)
 
 
 def sliding_coordinate(design: SectionedBlade | UnifiedBlade, edge: str) -> str:
@@ -71,10 +74,11 @@ def _across_walls(design: SectionedBlade) -> set[str]:
         curve = getattr(design.flow_path, wall)
         if isinstance(curve, ThroughPoints):
             way = np.gradient(np.real(np.array(curve.points)), axis=0) ** 2
-            across = np.where(way[:, 0] >= way[:, 1], "r", "x").tolist()
-            # where points at equal fractions of whole walls are joined, the shroud's ends decide which these are
+            across: list[tuple[str, ...]] = [("r",) if x >= r else ("x",) for x, r in way]
+            # where points at equal fractions of whole walls are joined, the shroud's ends decide which these are, so
+            # that both of their coordinates are free
             if wall == "shroud" and design.flow_path.matched == "ends":
-                across[0] = across[-1] = "xr"
+                across[0] = across[-1] = ("x", "r")
             found |= {f"flow_path.{wall}.points[{i}].{name}" for i, names in enumerate(across) for name in names}
     return found
 

@@ -1,7 +1,8 @@
 """A cloud in the machine's axes without what cuts, fillets and walls hide, and the motion there, found anew.
 
-A match is of the blade before the cuts and fillets of a given design, which the design that is found has again. A ball
-of radius r that rolls along a wall and a side touches the side no higher than 2 r.
+A match is of the blade before the cuts and fillets of a given design, which the design that is found has again. Where
+a ball of radius r rolls along a wall and a side that meet at the angle a, it touches the side r (1 + cos a) above the
+wall: no higher than 2 r. Edges and ends that are cut off, and walls that fillets hide, are held as they are given.
 
 A start that is off the true shape is laid on the cloud with a tilt that no parameter of a blade around an axis takes
 away, and that the shape follows. So the motion takes steps of Gauss and Newton on the residuals that no change of the
@@ -49,7 +50,8 @@ MOST_REALIGNMENTS = 4
 GAIN = 0.9
 """ratio of misfits after and before a realignment from which it is not worth a match (design/matching_constants.md)"""
 LONGEST_STEP = 0.2
-"""longest step of the motion, of the cloud's extent, in which residuals are linear (design/matching_constants.md)"""
+"""longest step of the motion, of the cloud's extent, in which residuals are nearly linear
+(design/matching_constants.md)"""
 WEAKEST_SLOPE = 1e-10
 """singular value of the slopes, of the largest, below which it is rounding (design/matching_constants.md)"""
 ON_CUT = 1e-3
@@ -78,7 +80,7 @@ def without_finishing(
 ) -> tuple[RowDesign | None, Design | None, Design | None]:
     """The first with cuts and fillets of a start and what the design is to be like, and both without them.
 
-    That one is the start where there is none: no cloud holds what is cut off or behind a fillet.
+    Where no start is given, `like` is the start, as no cloud holds what is cut off or behind a fillet.
     """
     given = next((each for each in (start, like) if isinstance(each, RowDesign) and each.plain is not each), None)
     if given is None:
@@ -118,15 +120,15 @@ UPRIGHT_NOTE = (
 
 def turned_with(here: PlacedTask, match: Match) -> PlacedTask:
     """What was sought, with the points turned about x as a match of them is."""
-    if not match.task.turn:
+    if not match.turn:
         return here
-    step = Motion(rotation=about_x(match.task.turn), translation=np.zeros(3))
+    step = Motion(rotation=about_x(match.turn), translation=np.zeros(3))
     linear = getattr(match.design, "arrangement", None) == "linear"
     return replace(
         here,
         motion=step if here.motion is None else composed(step, here.motion),
-        notes=(*here.notes, UPRIGHT_NOTE if linear else TURNED_NOTE.format(np.degrees(match.task.turn))),
-        every=here.every.turned(match.task.turn),
+        notes=(*here.notes, UPRIGHT_NOTE if linear else TURNED_NOTE.format(np.degrees(match.turn))),
+        every=here.every.turned(match.turn),
     )
 
 
@@ -157,7 +159,10 @@ Matched = tuple[Match, Any, str]
 def shown_of(
     every: Task, start: Design | None, given: RowDesign | None, free: FreeParameters, walls: Walls
 ) -> tuple[Task, NDArray[np.str_] | None]:
-    """The task without what walls, cuts and fillets hide, and (n,) what these are; what they would show is held."""
+    """The task without what walls, cuts and fillets hide, and (n,) what that is; None where there are none of them.
+
+    Of cuts and fillets it is a `face`; edges and walls that they hide are held.
+    """
     if given is None or start is None:
         if not walls.places:
             return every, None

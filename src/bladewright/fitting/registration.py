@@ -95,8 +95,9 @@ def registrations(points: Reals, design: Design) -> list[tuple[Motion, tuple[str
         return found.miss, rows, np.concatenate([found.normals, found.beyond[past]])
 
     some = cloud[random_subset(len(cloud), DECIDING_POINTS)]
-    tree, starts = cKDTree(samples.points), _starts(few, samples.points)
-    tried = sorted((_rough(few, tree, samples.normals, start, extent) for start in starts), key=lambda each: each[0])
+    tree = cKDTree(samples.points)
+    starts = _starts(few, samples.points)
+    tried = sorted((_rough(few, samples, tree, start, extent) for start in starts), key=lambda each: each[0])
     apart = list[Motion]()
     for off, motion in tried:
         same = (np.max(_lengths(motion(few) - other(few))) < FIRST_WIDTH * extent for other in apart)
@@ -141,16 +142,17 @@ def _starts(cloud: Reals, samples: Reals) -> list[Motion]:
     return [Motion(rotation=each, translation=centre - each @ pivot) for each in rotations]
 
 
-def _rough(points: Reals, tree: cKDTree, normals: Reals, motion: Motion, extent: float) -> tuple[float, Motion]:
+def _rough(points: Reals, samples: Footpoints, tree: cKDTree, motion: Motion, extent: float) -> tuple[float, Motion]:
     """The motion that closest samples lead to, point to point, then point to plane, and the mean distance there."""
-    samples, dimension, every = tree.data, points.shape[1], np.arange(len(points))
-    spacing = float(np.max(tree.query(samples, k=2)[0]))
+    dimension, every = points.shape[1], np.arange(len(points))
+    spacing = float(np.max(tree.query(samples.points, k=2)[0]))
 
     def contact(moved: Reals, *, planes: bool) -> Contact:
         index = tree.query(moved)[1]
+        miss = moved - samples.points[index]
         if planes:
-            return moved - samples[index], every, normals[index]
-        return moved - samples[index], np.repeat(every, dimension), np.tile(np.eye(dimension), (len(points), 1))
+            return miss, every, samples.normals[index]
+        return miss, np.repeat(every, dimension), np.tile(np.eye(dimension), (len(points), 1))
 
     for planes, steps in ((False, 6), (True, 24)):
         # tangent planes turn by about so much from sample to sample, and hold a prism along its span by no more

@@ -116,7 +116,7 @@ class Acceptance:
             yield f"{faced} of {outliers} outliers lie on the end faces: the sides are met without them"
         if self.target.open and EXACT * chord < self._largest <= NEAR_EVERYWHERE * chord and self._is_systematic:
             yield f"near enough to make, but {self._not_found}"
-        if measurement.footpoints.points.shape[1] == 3 and self._mean > GROSS_DEVIATION[0] * chord:
+        if self._in_space and self._mean > GROSS_DEVIATION[0] * chord:
             yield f"a blade in other axes is met no nearer than this: {AXES_HINT}"
         for name, (_, share) in self._uncovered_edges.items():
             if share <= HALF_BLADE_WIDTH:
@@ -144,6 +144,10 @@ class Acceptance:
     @property
     def _nothing_asked(self) -> bool:
         return self.target.open and not self.match.interrupted
+
+    @property
+    def _in_space(self) -> bool:
+        return self.measurement.footpoints.points.shape[1] == 3
 
     @property
     def _is_systematic(self) -> bool:
@@ -258,9 +262,12 @@ class Acceptance:
         bands = self._bands
         known, found = bands.half_widths <= GROSS_DEVIATION[1] * self.match.model.chord, {}
         for name, past in past_points(self.match, bands.side, bands.u, bands.v).items():
-            at, end = (bands.u, EDGE_PARAMETERS[name]) if name in EDGE_PARAMETERS else (bands.v, END_PARAMETERS[name])
-            away = np.abs(at - end)
-            near = away < BETWEEN_EDGES if name in EDGE_PARAMETERS else known & (away < 0.5)
+            if name in EDGE_PARAMETERS:
+                away = np.abs(bands.u - EDGE_PARAMETERS[name])
+                near = away < BETWEEN_EDGES
+            else:
+                away = np.abs(bands.v - END_PARAMETERS[name])
+                near = known & (away < 0.5)
             found[name] = past & near & np.any(known[away == 0.0])
         return found
 
@@ -271,7 +278,7 @@ class Acceptance:
         limits = np.where(np.any(list(self._bare.values()), axis=0), np.inf, np.maximum(self._limits, one_point))
         worst = int(np.argmax(bands.half_widths / limits))
         if bands.half_widths[worst] > limits[worst]:
-            along = f", v = {bands.v[worst]:.2g}" if self.measurement.footpoints.points.shape[1] == 3 else ""
+            along = f", v = {bands.v[worst]:.2g}" if self._in_space else ""
             yield (
                 f"the points do not show the {SIDES[bands.side[worst]]} side at u = {bands.u[worst]:.2g}{along}: it is "
                 f"known there to {self._length(bands.half_widths[worst])} either way (95 %), and "
@@ -328,7 +335,10 @@ class Acceptance:
 
 
 def _largest_group(feet: Footpoints, outliers: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """The largest group of outliers (n,) beside each other, where there may be one too large: strewn ones scatter."""
+    """The largest group of outliers (n,) beside each other, where there may be one that is too large.
+
+    Outliers scatter; a part of the blade that is not found does not.
+    """
     points, rows = feet.points + feet.miss, np.flatnonzero(outliers)
     if len(rows) <= LARGEST_GROUP * len(points):
         return rows[:0]

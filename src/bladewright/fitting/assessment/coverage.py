@@ -79,7 +79,7 @@ def loose_ends(match: Match) -> dict[str, float]:
     loose = {}
     for name in END_PARAMETERS:
         wall = walls.get(name)
-        free = parameters_of_curve(match.design, name) & {*match.problem.paths, *match.task.held}
+        free = parameters_of_curve(match.design, name) & {*match.problem.paths, *match.held}
         if not free:
             continue
         # a curve with as many parameters as points meets any

@@ -110,7 +110,7 @@ def shape_covariance(match: Match) -> tuple[tuple[str, ...], Reals]:
     designs: between rows of points that moves a blade's shape. Reference: Wahba 1983 (the penalty of a smoothing spline
     as its prior, and intervals of what both leave).
     """
-    problem, held = match.problem, () if match.state.shape.exact is None else tuple(sorted(match.task.held))
+    problem, held = match.problem, () if match.state.shape.exact is None else tuple(sorted(match.held))
     paths = *problem.paths, *held
     sizes = np.append(problem.scales.size, scales_of(match.design, held, match.model.chord).size)
     slopes, _, variance, _ = _linearised(match, paths, sizes)

@@ -260,9 +260,11 @@ class Fit(FrozenRecord, Shown):
             f"  {_number_of(len(self.cloud), 'point')}, {outliers}",
         ]
         if self.by_kind_set_aside:
-            kinds = self.by_kind_set_aside.items()
-            of_kinds = (f"{of.count} on the {kind} (up to {with_unit(design, of.maximum)} away)" for kind, of in kinds)
-            lines.append(f"  set aside: {', '.join(of_kinds)}")
+            parts = [
+                f"{each.count} on the {kind} (up to {with_unit(design, each.maximum)} away)"
+                for kind, each in self.by_kind_set_aside.items()
+            ]
+            lines.append(f"  set aside: {', '.join(parts)}")
         if self.motion is not None:
             cosine = (np.trace(self.motion.rotation) - (len(self.motion.rotation) - 2)) / 2.0
             angle = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))

@@ -56,7 +56,8 @@ def checked_cloud(cloud: ArrayLike) -> Reals:
             f"{np.count_nonzero(bad)} of {len(points)} points are not finite numbers, the first of them point "
             f"{int(np.argmax(bad))}: leave them out"
         )
-    different, dimension = np.unique(points[random_subset(len(points), MOST_POINTS)], axis=0), points.shape[1]
+    different = np.unique(points[random_subset(len(points), MOST_POINTS)], axis=0)
+    dimension = points.shape[1]
     if len(different) < FEWEST_POINTS[dimension]:
         raise FitError(
             f"the cloud has {len(different)} different points: at least {FEWEST_POINTS[dimension]} are needed; "
@@ -162,7 +163,10 @@ def _moved_onto(piece: Reals, other: Reals) -> tuple[float, str] | None:
 
 
 def _pitch_of_wheel(points: Reals) -> str | None:
-    """The pitch of blades all around the axis, in words: turned by it most points lie nearer than turned by half."""
+    """The pitch of blades all around the axis, in words.
+
+    Turned by the pitch either way, most points lie twice as near to the cloud as turned by half of it.
+    """
     tree, some = cKDTree(points), points[random_subset(len(points), TURNED_POINTS)]
 
     def away(turn: float) -> float:

@@ -35,7 +35,7 @@ MOST_SHEETS = 0.5
 """share of the points off a wall that may stand on curves too: blades do that are seen along their span, as one at the
 side of the axis is while a cascade is tried (design/matching.md)"""
 WIDER = 1.35
-"""width of a wall along the pitch, of the largest thickness beside it (design/matching.md)"""
+"""least width of a wall along the pitch, of the largest thickness beside it (design/matching.md)"""
 FILLET_PATCH = 8
 """points of a patch of a fillet, which is small (design/matching_constants.md)"""
 AT_WALL, ON_FILLET = 0.65, 0.5

@@ -122,7 +122,10 @@ def _with_smaller_radii(design: Design) -> Design:
 def _first(
     task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: DesignHeader, count: int
 ) -> tuple[float, Design, Match]:
-    """The turn of a frame, the blade in it with a closed blade's sections and laws of `count`, and its short search."""
+    """The turn of a frame, the blade in it with a closed blade's sections, and its short search.
+
+    Its laws have `count` control points along the span.
+    """
     built = [closed.exact.section(float(v)) for v in SECTION_SPANS]
     found, middle = ClosedChannel(exact=closed.exact), section_shape(built[MIDDLE])
     found = replace(found, backwards=_backwards(found, kind, like, middle))

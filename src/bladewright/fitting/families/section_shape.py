@@ -14,7 +14,7 @@ from bladewright.section.section import Section
 PLACES: Reals = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 201))) / 2.0
 """places from the leading to the trailing edge at which a section is sampled"""
 INNER = (PLACES > 0.03) & (PLACES < 0.97)
-"""those away from the edges, at which the middle of the sides may bend towards a corner"""
+"""those away from the edges: beside an edge the middle of the sides may bend towards a corner"""
 CAMBER_TERMS = 5
 """coefficients of the polynomial that multiplies x (1 - x) in a camber line (design/matching_constants.md)"""
 FINE_PLACES = 2001
@@ -122,6 +122,7 @@ def section_shape(section: Section, *, unroll: bool = False, turn: float = 0.0) 
     chord, stagger = float(np.hypot(*along)), float(np.arctan2(along[1], along[0]))
     upright = np.array([[np.cos(stagger), -np.sin(stagger)], [np.sin(stagger), np.cos(stagger)]]) / chord
     scale: Any = np.ones(2) if unroll else np.real(section.scale(np.array([start[0], end[0]])))
-    first, last = (min(float(r / (each * chord)), 0.5) for r, each in zip(section.edge_radii, scale, strict=True))
+    radii = (float(radius / (each * chord)) for radius, each in zip(section.edge_radii, scale, strict=True))
+    first, last = (min(radius, 0.5) for radius in radii)
     upper, lower = ((side - start) @ upright for side in (upper, lower))
     return SectionShape(chord=chord, stagger=stagger, start=start, upper=upper, lower=lower, edge_radii=(first, last))

@@ -28,7 +28,7 @@ WINDOW = 0.05
 """chord fraction to both sides of a cut, or of the leading edge, over which a cubic shows direction and curvature [-]
 (design/matching_constants.md)"""
 SCALES = (0.5, 1.0)
-"""scale factors with which a segment's search begins, one of which may end at another minimum [-]
+"""scale factors with which a segment's search begins, as from one alone it may end at another minimum [-]
 (design/matching_constants.md)"""
 SAMPLES: Reals = np.linspace(0.0, 1.0, 33)[1:-1]
 """parameters at which a segment is compared with the section"""
@@ -141,7 +141,11 @@ def _joined(like: AirfoilSide, line: Reals, cuts: Sequence[Any]) -> AirfoilSide:
 
 
 def _fitted(like: Segment, joints: tuple[JointVectors, JointVectors], line: Reals) -> Segment:
-    """The segment between two joints that is nearest to a line (n, 2), by least squares: scale factors and points."""
+    """The segment between two joints that is nearest to a line (n, 2) at `SAMPLES`, by least squares.
+
+    Its unknowns are both scale factors and the inner control points, which begin on the line and stay between the
+    joints. The best is taken of searches that begin with several scale factors.
+    """
     count, scaled = len(like.abscissas), [joint.direction is not None for joint in joints]
     start, end = (np.real(each.point[0]) for each in joints)
     distance = length(end - start)

@@ -208,7 +208,7 @@ class Net(Shape):
 
 def net_of(shape: Curve | Surface, *, closed: bool = False) -> Net:
     """A curve or surface as a net; of a closed curve the nearest on its distinct knots."""
-    along = [direction_of(shape, each) for each in DIRECTIONS[: np.ndim(shape.control_points) - 1]]
+    along = [direction_of(shape, each) for each in (DIRECTIONS[:1] if isinstance(shape, Curve) else DIRECTIONS)]
     knots, degrees = tuple(own for own, _ in along), tuple(degree for _, degree in along)
     if closed:
         knots = (np.pad(breaks(knots[0]), degrees[0], "edge"),)
@@ -232,9 +232,10 @@ def first_net(
     *,
     closed: bool = False,
 ) -> Net:
-    """The net, a little stiff, nearest to points (m, d) at shares (m, k) of its domain; raises FitError.
+    """The net, a little stiff, nearest to points (m, d) at shares (m, k) of its domain.
 
-    Its knots are uniform or given.
+    Its knots are uniform or given. Raises FitError where degrees, numbers of control points and knots make no curve or
+    surface, and where weights are not positive or not as many as control points.
     """
     if knots is not None:
         ends = (1,) if closed else tuple(degree + 1 for degree in degrees)

@@ -131,9 +131,9 @@ def likely_arrangements(
 def _searched_blade(
     points: Reals, channels: Sequence[SlicedChannel], header: dict[str, Any], turn: float
 ) -> tuple[float, FirstBlade]:
-    """What a short search of turned points (n, 3) [m] finds from the first channel that it can, and its mean distance.
+    """The mean distance, in chords, of turned points (n, 3) [m] from the blade that a short search finds, and this.
 
-    That is in chords. Raises FitError where there is none.
+    It begins from the first of several channels from which there is one. Raises FitError where there is none.
     """
     points = points[even_subset(points, DRAWN_POINTS)]
     some = points[random_subset(len(points), SEARCHED_POINTS)]
@@ -159,16 +159,19 @@ def _blade_of(sliced: SlicedChannel, header: dict[str, Any]) -> UnifiedBlade:
     place = slices.camber[:, 0, 1] * extents
     wide = float(np.ptp(sliced.plane.points[:, 1] * channel.extents(sliced.plane.v)[0]))
     if channel.revolved:
-        path, place, count = "leading_edge_theta", np.degrees(place), int(np.clip(np.pi / max(wide, 1e-3), 1, 10_000))
+        place = np.degrees(place)
+        count = int(np.clip(np.pi / max(wide, 1e-3), 1, 10_000))
         row = {"blade_count": header["blade_count"] or count, "pitch": None}
     else:
-        path, place, pitch = "leading_edge_y", place / metre, 2.0 * wide if header["pitch"] is None else header["pitch"]
+        place = place / metre
+        pitch = 2.0 * wide if header["pitch"] is None else header["pitch"]
         row = {"blade_count": None, "pitch": pitch / metre}
     law = plain_law(fitted_law(place, slices.v, FIRST_BLADE.counts["leading_edge_theta"][1]))
     # a meridional length at the places of the slices, in extents of the plane
     scale = lengths[:, None] / (channel.radius(PLACES, slices.v) * extents[:, None])
     numbers = unified_numbers(slices, FIRST_BLADE.counts, scale)
-    return UnifiedBlade(**{**header, **row, **numbers, path: law}, channel=channel.part(metre))
+    numbers["leading_edge_theta" if channel.revolved else "leading_edge_y"] = law
+    return UnifiedBlade(**header | row | numbers, channel=channel.part(metre))
 
 
 ANNULAR_AT_ONCE = 3e-3
@@ -179,8 +182,8 @@ ROW_BINS, ROW_HEIGHT = 16, 0.03
 """parts of x in each of which the lowest point is sought, and height of a row above it, of the span
 (design/matching_constants.md)"""
 ROW_DEGREE, ROW_TURNS, ROW_OUTLIER = 5, 5, 6.7
-"""degree of a row's line, iterations in which it is found, and distance of points that are none of it, in medians
-(design/matching_constants.md)"""
+"""degree of a row's line, iterations in which it is found, and distance from it, in medians, beyond which a point does
+not belong to the row (design/matching_constants.md)"""
 CLEARER_ROW, CLEAR_ROW = 0.5, 1e-3
 """ratio of the scatters of rows in two arrangements which decides, and largest scatter, of the span, of one on a plane
 (design/matching.md)"""

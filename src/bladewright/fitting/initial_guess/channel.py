@@ -192,10 +192,10 @@ def machine_coordinates(points: Reals, arrangement: str) -> Reals:
 def ranked_channels(
     machine: Reals, rows: NDArray[np.intp] | slice = slice(None), *, revolved: bool
 ) -> list[SlicedChannel]:
-    """The channel and slices for each likely choice of walls and edges, by all points and `rows` of them.
+    """The channel and slices for each likely choice of walls and edges, the likeliest first.
 
-    The likeliest, which leaves the least product of the slices' distance from the points and the channel's from the
-    outline (design/first_guesses.md), comes first.
+    All points show the outline, and which of its pieces are walls; `rows` of them the slices. The likeliest leaves the
+    least product of the slices' distance from the points and the channel's from the outline (design/first_guesses.md).
     """
     found: list[tuple[float, SlicedChannel]] = []
     boundary = alpha_boundary(machine[:, :2])
@@ -254,7 +254,10 @@ def pairings(machine: Reals, pieces: list[Reals], *, revolved: bool) -> tuple[in
 
 
 def _opening(machine: Reals, piece: Reals, *, revolved: bool) -> float | None:
-    """Root mean square tangential distance [m] of the points beside a piece of the outline from one surface, if any."""
+    """Root mean square tangential distance [m] of the points beside a piece of the outline from one surface.
+
+    None where too few points are beside it.
+    """
     way = cumulative_length(piece)
     t = np.linspace(0.0, 1.0, 400)
     line = np.stack([np.interp(t * way[-1], way, piece[:, i]) for i in (0, 1)], axis=-1)

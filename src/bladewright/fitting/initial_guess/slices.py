@@ -37,8 +37,8 @@ EDGE_PLACE = 0.02
 """place along the chord, from an edge, at which the half thickness shows the edge's radius (design/first_guesses.md)"""
 NOSE, LEAST_NOSE_WEIGHT, NOSE_REACH = 0.08, 0.05, 0.2
 """distance from an edge, in chords, from which points count in full, as a cambered section's nose does not point along
-the chord; weight of a point at the edge; and distance from the nose among whose points the edge is that furthest along
-the camber (design/first_guesses.md)"""
+the chord; weight of a point at the edge; and distance from the nose within which the edge is sought, as the point
+furthest along the camber (design/first_guesses.md)"""
 EDGE_SHARE = 60
 """one in so many points of a band stands at an edge (design/first_guesses.md)"""
 

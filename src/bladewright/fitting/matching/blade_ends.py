@@ -34,7 +34,8 @@ FACE_BAND, FACE_DEPTH, FACE_NEARER_WALL = 0.1, 5.0, 0.3
 """of a point of an end face: largest distance from the end, in v, least depth, in usual distances from the sides, and
 largest distance from the wall or a row of outliers, of that depth (design/matching_constants.md)"""
 FACE_OUTLIERS, FACE_OUTLIERS_NEARER_WALL = 20, 0.1
-"""fewest outliers that may be an end face, and the largest median of that ratio (design/matching_constants.md)"""
+"""fewest outliers that may be an end face, and the largest median of their distances from one row, of their depths
+(design/matching_constants.md)"""
 DEEPEST_FACE_POINT = 0.2
 """least depth of an end face's deepest point, of the blade's half thickness (design/matching_constants.md)"""
 PAST_END_BAND = 0.05
@@ -158,7 +159,8 @@ def blade_ends_of(
 
 def _outermost(footpoints: Footpoints, rows: NDArray[np.bool_], end: float) -> NDArray[np.bool_]:
     """Which of n points, of those in `rows` (n,), may belong to the row at an end."""
-    # where most parts of the chord show the end, those beside the outermost of each: a corner may have slid past them
+    # where most parts of the chord show the end, the row is the points beside the outermost of each part: a corner that
+    # has slid past its points is far from its row
     away, part = np.abs(footpoints.v - end), part_of(footpoints.u, ROW_PARTS)
     least = np.full(ROW_PARTS, np.inf)
     np.minimum.at(least, part[rows], away[rows])

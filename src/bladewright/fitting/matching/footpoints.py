@@ -103,7 +103,10 @@ def nearest_footpoints(
 
 
 def _facing_corners(footpoints: Footpoints, sides: Sequence[Side]) -> Footpoints:
-    """The footpoints, at corners with normals to their points: by those of the sides points ahead cost nothing."""
+    """The footpoints with those at corners, of blunt and sharp edges, facing their points, which lie outside.
+
+    The normal of either side there is across the way to the point, so that a point ahead of an edge would cost nothing.
+    """
     corner = np.zeros(len(footpoints.u), dtype=bool)
     for number, side in enumerate(sides):
         knots, degree = (side.knots, side.degree) if isinstance(side, Curve) else (side.knots_u, side.degree_u)

@@ -22,7 +22,8 @@ NEIGHBOURS = {2: 4, 3: 8}
 OUTLYING_NOISE = 6.0
 """distance of an outlier, in standard deviations of the noise (design/matching_constants.md)"""
 NEIGHBOUR_STEP = 5.0
-"""largest difference of neighbours, in standard deviations of the noise (design/matching_constants.md)"""
+"""largest difference of neighbours on one surface, in standard deviations of the noise
+(design/matching_constants.md)"""
 OUTLYING_MISFIT, OUTLYING_MISFIT_AT_EDGES = 6.0, 60.0
 """distance of an outlier, in usual misfits of the design, and near an edge (design/matching_constants.md)"""
 MATCHED = 1.0 / 3.0
@@ -32,7 +33,8 @@ EDGE_BAND = 0.03
 SIDES_APART = 0.05
 """distance that the sides of a thin blade are taken to have at least, of the extent (design/matching_constants.md)"""
 CHANCE_EXCESS = 3.0
-"""excess of the usual distance by chance, of the noise over the root of their number (design/matching_constants.md)"""
+"""excess of the usual distance over the noise by chance, in multiples of the noise over the root of the number of
+points (design/matching_constants.md)"""
 LARGEST_GROUP, SMALL_GROUP = 0.05, 20
 """largest group of outliers, of all points, and points it may have in any case (design/matching_constants.md)"""
 END_BAND, WRONG_END_SHARE = 0.02, 0.2
@@ -42,14 +44,16 @@ PAST_END_BY_CHANCE, LEVEL_SLOPE = 1, 0.05
 """points level with the sides that may lie past an end by chance, and height per length past it up to which a point is
 level (design/matching.md)"""
 LARGEST_OUTLIER_SHARE = 0.15
-"""share of outliers from which it is the design that lies off, and there are none (design/matching_constants.md)"""
+"""share of outliers from which it is the design that lies off, and all points count as inliers
+(design/matching_constants.md)"""
 LOCAL_POINTS, LOCAL_OVERLAP = 128, 16
 """points around a site whose noise and misfit are alike, and sites around a point (design/matching_constants.md)"""
 DEVIATION_OVER_QUARTILE = 1.0 / float(ndtri(5.0 / 8.0))
 """standard deviation of normal noise over the lower quartile of its magnitude, which end faces spoil less than the
 median (design/matching_constants.md)"""
 CORE_NEIGHBOURS = 3
-"""points of large groups to which a step from a small one may lead (design/matching_constants.md)"""
+"""points of the large groups beside a small one to which a step within the noise may lead
+(design/matching_constants.md)"""
 EXACT = 1e-4
 """distance to which exact points are to be met, of the extent of the cloud or of the chord: no point nearer is an
 outlier (design/matching_constants.md)"""
@@ -167,8 +171,9 @@ def _cut_off(
 def crowded_at_edges(outliers: NDArray[np.bool_], footpoints: Footpoints) -> dict[str, NDArray[np.bool_]]:
     """Which of n points are outliers at an edge, by its name, where more are than chance puts there.
 
-    By chance inside as many are at an edge as points are; outside an edge is nearest to what came from as far around it
-    as it is off (as many at most: Hoeffding 1956). Reference: Conover 1999, section 3.1 (binomial test).
+    Outliers lie anywhere, to either side of a true surface; those of an edge that is not found lie at it. By chance,
+    inside as many are at an edge as points are; outside, an edge is nearest to what came from as far around it as it is
+    off (as many at most: Hoeffding 1956). Reference: Conover 1999, section 3.1 (binomial test).
     """
     found, off, inside = {}, int(np.count_nonzero(outliers)), outliers & (footpoints.heights < 0.0)
     for name, end in EDGE_PARAMETERS.items():
@@ -207,7 +212,10 @@ class NoiseEstimate:
     """share of the inliers' variance that neighbours have in common: 0 for pure noise, 1 for a misfit of the design"""
 
     def independent_share(self, parameters: int) -> float:
-        """Share of the points that count as independent: those for two parameters of a design share a misfit."""
+        """Share of the points that count as independent, for a design with so many parameters.
+
+        A misfit is shared by as many neighbours as there are points for two parameters.
+        """
         points = float(np.count_nonzero(self.inliers)) / (2.0 * parameters)
         return 1.0 / (1.0 + self.correlation * max(points - 1.0, 0.0))
 
@@ -228,7 +236,8 @@ def noise_of(
         return _noise_of_some(points, footpoints, weights, rows, trusted)
     weights = np.ones(len(points)) if weights is None else weights / np.mean(weights)
     heights, around = footpoints.heights, neighbourhood_of(points, footpoints)
-    inliers, index = ~_outliers_of(footpoints, weights, around) | trusted, around.index
+    inliers = ~_outliers_of(footpoints, weights, around) | trusted
+    index = around.index
     kept = inliers & inliers[index].all(axis=1)
     kept = kept if np.any(kept) else np.ones(len(points), dtype=bool)
     others, height, own_weight = weights[index[kept]], heights[kept], weights[kept]
@@ -254,8 +263,8 @@ FLAT = 1e-3
 def _linear_shares(places: Reals, beside: Reals, normals: Reals) -> Reals:
     """Shares (n, k) of the heights of points (n, k, 4) in that of a plane through them at places (n, 4) [m].
 
-    It leaves out the slope of a misfit, which neighbours to one side do not cancel. Reference: Gasser, Sroka and
-    Jennen-Steinmetz 1986 (pseudo-residuals).
+    The normals (n, 3) are those of the surface. The difference from the plane leaves out the slope of a misfit, which
+    neighbours to one side do not cancel. Reference: Gasser, Sroka and Jennen-Steinmetz 1986 (pseudo-residuals).
     """
     offsets = (beside - places[:, None])[..., : normals.shape[1]]
     offsets = offsets - np.sum(offsets * normals[:, None], axis=-1, keepdims=True) * normals[:, None]
@@ -268,7 +277,10 @@ def _linear_shares(places: Reals, beside: Reals, normals: Reals) -> Reals:
 def _noise_of_some(
     points: Reals, footpoints: Footpoints, weights: Reals | None, rows: NDArray[np.intp], trusted: NDArray[np.bool_]
 ) -> NoiseEstimate:
-    """The noise estimate of the points in `rows`, and which of the others are inliers by it."""
+    """The noise estimate of the points in `rows`, and which of the others are inliers by it.
+
+    Those are level with an inlier beside them, or where they have no weight no further off than every inlier.
+    """
     part = footpoints.part(rows)
     found = noise_of(points[rows], part, None if weights is None else weights[rows], trusted=trusted[rows])
     kept = part.part(found.inliers)

@@ -89,8 +89,8 @@ def regularisation_of(
     values = start.parameters()
     index = {path: i for i, path in enumerate(paths)}
     tangents = _tangents(start, TANGENT_SPREAD * float(np.sqrt(independent_share)))
-    own = _second_differences(start), _meridional_bends(start), _thickness_differences(start), tangents
-    for terms, usual, width in chain.from_iterable(own):
+    bends = chain(_second_differences(start), _meridional_bends(start))
+    for terms, usual, width in chain(bends, _thickness_differences(start), tangents):
         free = {index[path]: factor for path, factor in terms if path in index}
         if not free:
             continue
@@ -120,7 +120,10 @@ def _second_differences_of(line: Sequence[str]) -> Iterator[Row]:
 
 
 def _meridional_bends(start: Design) -> Iterator[Row]:
-    """Second differences of what points of curves change by: the cloud hardly shows those past hub and shroud."""
+    """Second differences of what points of curves change by: the curves bend themselves.
+
+    Of an edge the cloud hardly shows the points past hub and shroud.
+    """
     values, lines = start.parameters(), dict[str, list[str]]()
     for path in values:
         found = POINT_PATH.fullmatch(path)
@@ -225,12 +228,9 @@ class CloudResiduals:
         return float(np.sqrt(max(1.0, EDGE_SHARE * len(self.points) / max(1, len(self.overhang.u)))))
 
 
-@dataclass(kw_only=True, eq=False)
+@dataclass(kw_only=True, eq=False, repr=False)
 class MatchProblem(ConstrainedProblem):
-    """Residuals of a cloud, of unusual edge heights and of the regularisation, under the shape's constraints.
-
-    `best` are the variables of least cost so far.
-    """
+    """Residuals of a cloud, of unusual edge heights and of the regularisation, under the shape's constraints."""
 
     cloud_residuals: CloudResiduals
     start: Design
@@ -243,9 +243,16 @@ class MatchProblem(ConstrainedProblem):
     """that keeps edge radii from what is refused"""
     begun: InitVar[PlacedCloud]
     evaluations: int = 0
+    model: Model = field(init=False)
+    """of the cloud's residuals"""
+    first: Reals = field(init=False)
+    """(k,) parameters of the start, in the units of their fields"""
+    best: Reals = field(init=False)
+    """(k,) the variables of least cost so far"""
 
     def __post_init__(self, begun: PlacedCloud) -> None:
-        self.model, self.first = self.cloud_residuals.model, self.values_of(self.start)
+        self.model = self.cloud_residuals.model
+        self.first = self.values_of(self.start)
         self.best, self._least = np.zeros(len(self.paths)), np.inf
         self._hint = begun.footpoints
         self._last: tuple[bytes, PlacedCloud | None] = (self.vector(begun.shape.design).tobytes(), begun)

@@ -88,7 +88,9 @@ class Scales:
     size: Reals
     """(k,) a change that matters: the unit of a search, and how far a first guess may be off"""
     low: Reals
+    """(k,) lowest values"""
     high: Reals
+    """(k,) highest values"""
 
     def inside(self, values: Reals) -> NDArray[np.bool_]:
         """Which of the parameters (k,) lie on none of their bounds, apart from rounding."""

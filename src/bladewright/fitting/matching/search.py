@@ -7,15 +7,15 @@ search in exact data ends free of it. Knots, outliers and what lies at the ends 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from itertools import chain
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bladewright.designs import Design
-from bladewright.errors import BladewrightError, DesignError, FitError
+from bladewright.errors import DesignError, FitError
 from bladewright.fitting.clouds.thinning import random_subset
+from bladewright.fitting.matching.best_so_far import BestSoFar
 from bladewright.fitting.matching.blade_ends import BladeEnds, blade_ends_of, edge_overhang_of
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.noise import EXACT, NoiseEstimate, doubted_outliers, noise_of
@@ -47,8 +47,6 @@ NATIVE_TOLERANCE_OF_NOISE = 0.1
 EDGE_RADIUS_MARGIN = {2: 2e-6, 3: 2e-5}
 """margin by which the control point that sets an edge's radius is held below the thickness beside it, of the section's
 extent, by dimension: a blade is refused between its stations too (design/matching_constants.md)"""
-KEPT_DESIGNS = 3
-"""designs of as many parameters that are kept, as the nearest may not be built (design/matching_constants.md)"""
 NOISE_CORRELATION = 0.15
 """share of the misfit that neighbours have in common below which it is noise (design/matching_constants.md)"""
 FAR_OFF = 3.0
@@ -67,49 +65,6 @@ def about_x(angle: float) -> Reals:
     return np.array([[1.0, 0.0, 0.0], [0.0, cosine, sine], [0.0, -sine, cosine]])
 
 
-@dataclass(frozen=True, eq=False)
-class BestSoFar:
-    """The nearest matches so far, by their number of parameters, as the last may be interrupted, or not built."""
-
-    found: dict[int, list["Match"]] = field(default_factory=dict)
-
-    def note(self, found: "Match") -> None:
-        """Keeps the end of a round if few of as many parameters are nearer."""
-        if np.isfinite(found.mean_distance):
-            alike = [*self.found.get(count := len(found.problem.paths), ()), found]
-            self.found[count] = sorted(alike, key=lambda each: each.mean_distance)[:KEPT_DESIGNS]
-
-    def built(
-        self, least_tolerance: float = 0.0, suits: Callable[["Match"], bool] = lambda _: True
-    ) -> tuple["Match", Any] | None:
-        """The nearest match that suits and can be built no finer than a tolerance, of the chord, and what it builds."""
-        suitable = filter(suits, chain.from_iterable(self.found.values()))
-        for found in sorted(suitable, key=lambda each: each.mean_distance):
-            tolerance = getattr(found.design, "tolerance", None)
-            design = found.design.changed({} if tolerance is None else {"tolerance": max(tolerance, least_tolerance)})
-            try:
-                return replace(found, design=design), design.build()
-            except BladewrightError:
-                continue
-        return None
-
-    def instead_of(self, refused: "Match", error: Exception, *, structured: bool) -> tuple["Match", Any, str]:
-        """The same of the family of a match that cannot be built, with its parameters or fewer, and a note.
-
-        Raises FitError where there is none.
-        """
-        paths = refused.problem.paths
-
-        def suits(found: "Match") -> bool:
-            alike = found.problem.paths == paths if structured else len(found.problem.paths) <= len(paths)
-            return alike and isinstance(found.design, type(refused.design))
-
-        found, refusal = self.built(suits=suits), f"the nearest design cannot be built ({error})"
-        if found is None:
-            raise FitError(f"{refusal}; give a start design, or bounds that keep off it") from error
-        return *found, f"{refusal}, and the nearest that can is given"
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Task:
     """What is sought: points, weights, free parameters and bounds."""
@@ -124,6 +79,7 @@ class Task:
     """lowest and highest values by pattern, in the units of the fields"""
     progress: Progress = lambda _: None
     regularisation_factor: float = 1.0
+    """factor of the regularisation"""
     margin_factor: float = 1.0
     """factor of the margin that keeps edge radii from what is refused"""
     precision: Reals | None = None
@@ -175,15 +131,22 @@ class Task:
 
     def part(self, rows: NDArray[np.intp]) -> "Task":
         """The same task with some of the points (m,)."""
-        every: dict[str, Any] = {name: getattr(self, name) for name in ("points", "weights", "precision", "trusted")}
-        return replace(self, **{name: given[rows] for name, given in every.items() if given is not None})
+        return replace(
+            self,
+            points=self.points[rows],
+            weights=self.weights[rows],
+            precision=None if self.precision is None else self.precision[rows],
+            trusted=None if self.trusted is None else self.trusted[rows],
+        )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Match:
-    """A design found for a cloud: where a search ended."""
+    """A design found for a cloud: where a search ended.
 
-    task: Task
+    It does not hold the task, whose best designs so far are matches: only the cyclic collector would free the clouds.
+    """
+
     design: Design
     problem: MatchProblem
     state: PlacedCloud
@@ -192,7 +155,12 @@ class Match:
     damping: float
     evaluations: int
     converged: bool = False
+    """whether the last descent converged"""
     interrupted: bool = False
+    turn: float = 0.0
+    """angle about x by which the task's points are turned [rad]"""
+    held: frozenset[str] = frozenset()
+    """parameters of the task that are held as the points do not determine them"""
 
     @property
     def model(self) -> Model:
@@ -253,22 +221,22 @@ def is_refused(match: Match) -> bool:
 
 def searched(
     task: Task,
-    start: "Design | Match",
+    start: Design | Match,
     *,
     rounds: int = MOST_ROUNDS,
     noise: float | None = None,
     min_reduction: float = MIN_REDUCTION,
-    enough: Callable[["Match"], bool] = lambda found: found.misfit < EXACT_MISFIT,
+    enough: Callable[[Match], bool] = lambda found: found.misfit < EXACT_MISFIT,
     settled: float = SETTLED_RATIO,
     fading: bool = False,
 ) -> Match:
     """The design nearest to the cloud that a search from `start`, a design or a match evaluated for it, finds.
 
-    The first round's `noise`, of the chord, is that of the match, or the misfit of the start. `min_reduction` is the
-    relative reduction of the cost that a step must predict. The search ends after a round that is `enough`, or leaves
-    more than the share `settled` of the misfit. While the misfit is systematic, the regularisation does not rise, and
-    falls where it is `fading`. Raises FitError where the start has no shape, and KeyboardInterrupt after it has noted
-    the best design of a round that was interrupted.
+    `noise`, of the chord, is the first round's; None takes the misfit of the start, and a match brings its own. The
+    structure is that of `start`. `min_reduction` is the relative reduction of the cost that a step must predict. The
+    search ends after a round that is `enough`, or leaves more than the share `settled` of the misfit. While the misfit
+    is systematic, the regularisation does not rise, and falls where it is `fading`. Raises FitError where the start has
+    no shape, and KeyboardInterrupt after it has noted the best design of a round that was interrupted.
     """
     found, rounds_without_gain = start if isinstance(start, Match) else evaluated(task, start, noise=noise), 0
     task.best_so_far.note(found)
@@ -348,13 +316,14 @@ def evaluated(task: Task, design: Design, *, noise: float | None, before: Match 
         margin=EDGE_RADIUS_MARGIN[points.shape[1]] * task.margin_factor,
     )
     return Match(
-        task=task,
         design=design,
         problem=problem,
         state=begun,
         noise_estimate=noise_estimate,
         ends=ends,
         damping=FIRST_DAMPING if before is None else before.damping,
+        turn=task.turn,
+        held=task.held,
         evaluations=1 if before is None else before.evaluations + 1,
     )
 

@@ -63,23 +63,26 @@ class Prediction:
 
 
 class FreeLaw:
-    """A law whose control points are parameters of a match, and what is left of them with other counts."""
+    """A law of a match, which of its control points' numbers are free, and what is left of these with other counts."""
 
-    def __init__(self, law: ResizableLaw, match: Match) -> None:
-        problem, values, paths = match.problem, match.design.parameters(), law.paths(match.design)
-        self.law, self.design, self.counts = law, match.design, law.counts_of(match.design)
+    def __init__(self, of: ResizableLaw, match: Match) -> None:
+        problem, values, paths = match.problem, match.design.parameters(), of.paths(match.design)
+        self.of, self.design, self.counts = of, match.design, of.counts_of(match.design)
         self.free = np.array([path in problem.paths for path in paths], dtype=bool)
         """(k,) which of its control points' numbers are free"""
         self.columns = np.array([problem.paths.index(path) for path in paths if path in problem.paths], dtype=int)
         """of the free ones, among the parameters of the match"""
-        self._unit = float(next(iter(problem.scales.size[self.columns]), 1.0))
+        size = problem.scales.size
+        self._unit = float(size[self.columns[0]]) if len(self.columns) else 1.0
         self._values = np.array([float(values[path]) for path in paths]) / self._unit
-        self.subspace, self.lost = cache(self._subspace), cache(self._lost)
+        # what they give depends on counts only
+        self.subspace = cache(self._subspace)
+        self.lost = cache(self._lost)
 
     def _subspace(self, counts: Counts) -> tuple[Reals, Reals, NDArray[np.bool_], Reals]:
         """Its free parameters by those with other counts, the nearest of these, which are free, and the change."""
-        embedding = self.law.embedding(self.counts, counts)
-        offset = self.law.offset(self.design, self.counts, counts) / self._unit
+        embedding = self.of.embedding(self.counts, counts)
+        offset = self.of.offset(self.design, self.counts, counts) / self._unit
         nearest = np.asarray(np.linalg.lstsq(embedding, self._values - offset, rcond=None)[0])
         kept = np.ones(embedding.shape[1], dtype=bool)
         kept[[int(np.argmax(row)) for row in embedding[~self.free]]] = False
@@ -88,9 +91,9 @@ class FreeLaw:
 
     def _lost(self, counts: Counts, fewer: Counts) -> tuple[Reals, Reals]:
         """Directions (m, k) in which a law with some counts is none of those with fewer, and where these begin (k,)."""
-        embedding = self.law.embedding(counts, fewer)
+        embedding = self.of.embedding(counts, fewer)
         directions = np.linalg.qr(embedding, mode="complete")[0][:, embedding.shape[1] :].T
-        return directions, self.law.offset(self.design, counts, fewer) / self._unit
+        return directions, self.of.offset(self.design, counts, fewer) / self._unit
 
 
 class LinearModel:
@@ -112,7 +115,7 @@ class LinearModel:
         self._penalised = problem.regularisation.residuals(problem.vector(match.design))
         laws = [FreeLaw(law, match) for law in resizable_laws(match.design)]
         # a law that is held in part keeps its control points, but for the channel's corners
-        self.laws = [each for each in laws if np.any(each.free) and (each.law.holds_corners or np.all(each.free))]
+        self.laws = [each for each in laws if np.any(each.free) and (each.of.holds_corners or np.all(each.free))]
         self._columns = np.concatenate([np.zeros(0, dtype=int), *(law.columns for law in self.laws)])
         self._others = np.setdiff1d(np.arange(len(problem.paths)), self._columns)
         self.weighted(roots**2)
@@ -164,16 +167,16 @@ class LinearModel:
         Seber and Wild 1989, section 5.2).
         """
         found, first = [], len(self._others)
-        for i, (law, counts) in enumerate(zip(self.laws, prediction.counts, strict=True)):
-            part, nearest, free, shift = law.subspace(counts)
+        for i, (free_law, counts) in enumerate(zip(self.laws, prediction.counts, strict=True)):
+            part, nearest, free, shift = free_law.subspace(counts)
             own = slice(first, first + part.shape[1])
             first = own.stop
             values = nearest.copy()
-            values[free] += np.linalg.lstsq(part, prediction.change[law.columns] - shift, rcond=None)[0]
+            values[free] += np.linalg.lstsq(part, prediction.change[free_law.columns] - shift, rcond=None)[0]
             for place, count in enumerate(counts):
-                for fewer in range(max(law.law.fewest[place], count - LARGEST_STEP), count):
+                for fewer in range(max(free_law.of.fewest[place], count - LARGEST_STEP), count):
                     smaller = (*counts[:place], fewer, *counts[place + 1 :])
-                    lost, offset = law.lost(counts, smaller)
+                    lost, offset = free_law.lost(counts, smaller)
                     if not len(lost):
                         # a row that is left out has no laws along the span to lose control points
                         continue
@@ -194,7 +197,7 @@ class LinearModel:
 
     def structured(self, counts: Sequence[Counts]) -> Structure:
         """The structure with these numbers of control points, and the samples that they need."""
-        changed = {law.law.name: each for law, each in zip(self.laws, counts, strict=True)}
+        changed = {free_law.of.name: each for free_law, each in zip(self.laws, counts, strict=True)}
         return replace(self.structure, counts={**self.structure.counts, **changed}).with_samples(self.samples)
 
     def designed(self, prediction: Prediction) -> Any:

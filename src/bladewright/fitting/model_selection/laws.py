@@ -39,6 +39,7 @@ class ResizableLaw(ABC):
     fewest: Counts
     """numbers of control points that it has at least"""
     most: Counts
+    """at most"""
     rich: Counts
     """its numbers of control points in a rich structure"""
     holds_corners: bool = False

@@ -71,7 +71,10 @@ class RichMatch:
 def selected_match(
     task: Task, first: Design, target: MatchTarget, *, like: Structure | None, guessed: bool
 ) -> tuple[Match, str]:
-    """The match from a first design or a start, and why it misses what is asked; `like` is the structure of another."""
+    """The match, and why it misses what is asked, a note, or an empty string.
+
+    `first` is a start, or a first guess where it is `guessed`; `like` is the structure of a given design.
+    """
     return reduced_match(rich_match(task, first, target, like=like, guessed=guessed), target)
 
 

@@ -143,7 +143,9 @@ def _(design: SectionedBlade) -> list[ResizableLaw]:
         curve = getattr(design.flow_path, wall)
         if isinstance(curve, ThroughPoints) and len(curve.points) >= FEWEST_ON_WALL:
             way = cumulative_length(np.real(np.array(curve.points)))
-            name, fewest, stations = f"flow_path.{wall}", (FEWEST_ON_WALL,), tuple((way / way[-1]).tolist())
+            name = f"flow_path.{wall}"
+            fewest = (FEWEST_ON_WALL,)
+            stations = tuple((way / way[-1]).tolist())
             found.append(WallPoints(name=name, fewest=fewest, most=most, rich=rich, axes="xr", stations=stations))
     return found
 
@@ -151,7 +153,9 @@ def _(design: SectionedBlade) -> list[ResizableLaw]:
 @resizable_curves.register
 def _(design: SegmentedSection) -> list[ResizableLaw]:
     """The inner control points of the segments, but for those whose skin morphs."""
-    found, part, most, rich = list[ResizableLaw](), design.section, (MOST_CHORD,), (RICH_SEGMENT,)
+    found = list[ResizableLaw]()
+    part = design.section
+    most, rich = (MOST_CHORD,), (RICH_SEGMENT,)
     for sign, side in ((1.0, "upper"), (-1.0, "lower")):
         given = getattr(part, side)
         joints = [0 if part.nose is None else part.nose.continuity, given.front_joint.continuity]
@@ -172,14 +176,18 @@ def sized_laws(design: Any) -> list[ResizableLaw]:
         )
     part = getattr(design, "section", design)
     stem, rich = ("", RICH_CHORDWISE) if part is design else ("section.", RICH_SECTION)
-    rows, most_span, found = chordwise_rows(part), MOST_SPAN if design.dimension == 3 else 1, list[ResizableLaw]()
+    rows = chordwise_rows(part)
+    found = list[ResizableLaw]()
     for name, row in rows.items():
-        fewest, most = (0 if row.optional else row.fewest, 1), (row.most, most_span)
-        numbers, path = (rich[design.dimension], _rich_span(stem, name)), f"{stem}{name}"
+        path = f"{stem}{name}"
+        fewest = 0 if row.optional else row.fewest, 1
+        most = row.most, MOST_SPAN if design.dimension == 3 else 1
+        rich_counts = rich[design.dimension], _rich_span(stem, name)
         kind = HeightsLaw if name.endswith("_heights") else SpanLaw
         # of the control points of a second derivative only the ratios count, so that the largest is held
-        held = name == "curvature"
-        found.append(kind(name=path, fewest=fewest, most=most, rich=numbers, row=row, holds_corners=held))
+        found.append(
+            kind(name=path, fewest=fewest, most=most, rich=rich_counts, row=row, holds_corners=name == "curvature")
+        )
     for path, _ in named_laws(design) if design.dimension == 3 else ():
         in_row = path.removeprefix(stem).partition("[")[0] in rows
         if (path.startswith(stem) or path in POSITIONS) and not (in_row or path.startswith(WEIGHTS)):
@@ -372,9 +380,10 @@ def wider_structure(
 
 
 def _towards(whole: Structure, design: Design, free: Collection[str], points: int, rows: int) -> Structure:
-    """A whole structure, or as large a share of what it has more than a design as points, and rows, allow."""
+    """A structure with more control points than a design's own, or as large a share of them as the points allow."""
 
     def within_rows(law: ResizableLaw, place: int, count: int) -> int:
+        # along the span it has no more of them than rows, but the fewest that its laws may have
         return max(min(count, rows), law.fewest[place]) if place in law.along_span else count
 
     laws = resizable_laws(design)

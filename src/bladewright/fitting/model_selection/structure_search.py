@@ -93,16 +93,18 @@ class StructureSearch:
     def rich(self, match: Match, target: MatchTarget) -> Match:
         """The match of a rich structure, and of ever richer ones until one is near enough or comes hardly nearer."""
         found, least = match, target.tolerance or NEAR * match.model.chord
-        # the structure of a design, or one of fewer parameters, is sought from more than its samples determine
-        first = partial(rich_structure, sampled=target.open or target.tolerance is not None)
+        # where a structure or a number is asked, rich laws may have more control points along the chord than samples
+        # determine
+        first_structure = partial(rich_structure, sampled=target.open or target.tolerance is not None)
         search = partial(searched, min_reduction=ROUGH_REDUCTION, settled=SETTLED_RICH, fading=True)
         shown = len(self.task.points), self._rows_shown(match)
         while found is match or (has_systematic_misfit(found) and not self._is_enough(found, target)):
             try:
-                # in space structures begin without what they are predicted not to need; a slim one grows without it too
+                # in space structures begin without what they are predicted not to need; exact clouds, and those of
+                # which something is asked, lose that before they grow as well
                 slim = self.task.dimension == 3 and (not target.open or is_exact(found))
                 about = self._without_surplus(found) if slim and found is not match else found.design
-                widened = first if found is match else partial(wider_structure, slim=slim)
+                widened = first_structure if found is match else partial(wider_structure, slim=slim)
                 design = widened_where_feasible(about, widened(about, self.task.free(about), *shown))
                 if self.task.dimension == 3:
                     wide = evaluated(self.task, design, noise=found.rms)
@@ -130,7 +132,10 @@ class StructureSearch:
         return target.tolerance is None or rich.maximum <= TO_SPARE * target.tolerance
 
     def _without_surplus(self, rich: Match, most: float = np.inf) -> Design:
-        """The design of the fewest control points predicted to leave hardly more than a rich match, and `most` rms."""
+        """The design of the fewest control points that is predicted to leave hardly more than a rich match.
+
+        The rich one itself, where that is predicted to leave more than `most` rms, of the chord.
+        """
         candidates = eliminated(model := self._model(rich), 0)
         chosen = [each for each in candidates if each.rms <= min(NEAR_RICH * candidates[0].rms, most)]
         start = self._start(model, chosen[-1]) if chosen else None
@@ -206,7 +211,7 @@ class StructureSearch:
         def predicted(model: LinearModel) -> list[Prediction]:
             return [each for each in eliminated(model, 0, relative) if each.largest <= PREDICTED * relative]
 
-        def search(model: LinearModel, prediction: Prediction) -> Match | None:
+        def reweighted_search(model: LinearModel, prediction: Prediction) -> Match | None:
             start = self._start(model, prediction)
             return start and nearest_to_tolerance(self.task, start, prediction.weights, tolerance)
 
@@ -215,7 +220,9 @@ class StructureSearch:
 
         found, nearest = rich if kept(rich) and not is_refused(rich) else None, None
         if kept(rich) or has_systematic_misfit(rich):
-            found, nearest = self._fewest(rich, found, rounds=1, predicted=predicted, search=search, kept=kept)
+            found, nearest = self._fewest(
+                rich, found, rounds=1, predicted=predicted, search=reweighted_search, kept=kept
+            )
         if found is not None:
             return found, ""
         nearest = min(filter(None, (rich, nearest)), key=lambda each: each.maximum)
@@ -237,7 +244,8 @@ class StructureSearch:
 
         Each structure is `predicted` about the last match, widened and searched for some `rounds`, as a linear model
         about a rich match does not reach as far as narrow structures lie. Where its `search` leads no nearer, or
-        nothing wider than what has failed is predicted, one between this and the last that was kept is searched.
+        nothing wider than what has failed is predicted, one between this and the last that was kept is searched. A rich
+        match that is kept is the first of them, so that none is searched that would save little.
         """
         nearest, least, about, failed, narrowest = None, np.inf, rich, 0, True
         for _ in range(self.predictions):
@@ -313,7 +321,8 @@ class StructureSearch:
 REWEIGHTED_SEARCHES = 6
 """searches of one structure with other weights at most (design/matching_constants.md)"""
 TOUCHED = 0.05
-"""excess over the tolerance, of it, above which one foreseen of the last ends them (design/matching_constants.md)"""
+"""largest excess over the tolerance, as a share of it, that the last of these searches is foreseen to have; where it is
+more, they end (design/matching_constants.md)"""
 
 
 def nearest_to_tolerance(task: Task, start: Match, weights: Reals, tolerance: float) -> Match:
