@@ -53,7 +53,7 @@ NOISE_REASON = "what is left is the cloud's own noise, {:.2g} mm: more control p
 TRIED_PARAMETERS, MOST_TRIED = 100, 4
 """parameters of the structures of one size that are searched, in all, as predictions are linear; and structures at most
 (`MOST_TRIED`), so that one can be built (design/matching_constants.md)"""
-STAGES = 3
+STAGES = 2
 """times that structures are predicted anew about the match that they led to (design/matching_constants.md)"""
 NEAR_RICH = 1.25
 """largest distance, of a rich match's, of one of which nothing is asked (design/matching_constants.md)"""
