@@ -143,15 +143,15 @@ class StructureSearch:
 
     def of_size(self, rich: Match, most: int) -> Match:
         """The match of at most so many parameters that predictions lead to; the rich one where none can be built."""
-        best, about = None, rich
+        best = None
         for _ in range(STAGES):
-            model = self._model(about)
+            model = self._model(self._widened(best, rounds=self.task.dimension - 2) if best else rich)
             searches = (self._searched(model, each) for each in best_of_size(model, most)[:MOST_TRIED])
             built = (each for found in searches if found and (each := self._built(found)))
             fresh = min(islice(built, max(1, TRIED_PARAMETERS // most)), key=lambda each: each.misfit, default=None)
             if fresh is None or (best is not None and fresh.misfit >= best.misfit):
                 break
-            best, about = fresh, self._widened(fresh, rounds=self.task.dimension - 2)
+            best = fresh
         return best or rich
 
     def _built(self, match: Match) -> Match | None:
