@@ -1,11 +1,13 @@
 """What a cloud says of a blade's ends and of its edges."""
 
+from dataclasses import replace
 from functools import cache
 
 import matching_clouds
 import numpy as np
 import pytest
 
+from bladewright.designs import Point
 from bladewright.fitting.matching.blade_ends import blade_ends_of, edge_overhang_of, outward_at_edges
 from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footpoints
 from bladewright.fitting.models.model import model_of
@@ -77,6 +79,21 @@ def test_a_row_is_found_among_points_beside_it_where_its_wall_is_not_known_yet()
         assert len(off) < 660
         assert np.count_nonzero(np.abs(off) < 3e-6 * model.chord) >= 600
         assert np.max(np.abs(found.walls[name].located(other.exact)[2])) > 3e-4 * model.chord
+
+
+def test_a_row_is_found_where_the_control_points_of_its_wall_crowd():
+    design = replace(example("compressor-stator"), hub_clearance=None)
+    model = model_of(design)
+    crowded = [Point(7.7, 182.19), Point(21.1, 182.60), Point(30.9, 182.70), Point(35.6, 182.81), Point(39.7, 182.83)]
+    found = replace(design, channel=replace(design.channel, hub=tuple(crowded)))
+    other = model_of(found).shape(found)
+    row = np.linspace(0.0, 1.0, 120)
+    points = np.concatenate([side(row, np.full(120, e)) for side in model.shape(design).sides for e in (0.0, 1.0)])
+    ends = blade_ends_of(points, nearest_footpoints(points, other.sides), other, np.ones(len(points), dtype=bool))
+    wall = ends.walls["hub"]
+    # 0.13 mm off, the wall is no polynomial of its own parameter over the row, which is as straight as native sides are
+    assert np.max(np.abs(wall.located(other.exact)[2])) > 2e-3 * model.chord
+    assert wall.spread < 1e-6 * model.chord
 
 
 def test_points_a_little_inside_beside_an_end_are_no_end_face():

@@ -50,6 +50,8 @@ of the places' extent (design/matching_constants.md)"""
 ROW_DEGREE, ROW_TURNS, ROW_SETTLING_TURNS = 6, 30, 3
 """highest degree of the law by which a row may be off the wall, and turns in which it is found as a quantile, then by
 least squares (design/matching_constants.md)"""
+CLEARLY_ALONE = 0.5
+"""ratio of medians below which a row is told by a line of its own, not by its wall (design/matching.md)"""
 OUTER_QUANTILE = 0.2
 """share of the places outside the law that is first sought: a row is the outermost (design/matching_constants.md)"""
 ROW_SPREAD = 1e-3
@@ -186,13 +188,27 @@ def _walls_beside(beside: Sequence[Reals], exact: ExactBlade) -> Iterator[WallPo
 def _off_row(wall: WallPoints, exact: ExactBlade) -> Reals:
     """Distances (m,) [m] from the row in which most places stand, which may be off the wall by a smooth law.
 
-    The law is a polynomial along the wall, first that of a quantile, as places beside the row lie inwards of it only.
+    Where that leaves twice as much, by a law of the row's own off a straight line: a wall that is not found yet may be
+    no smooth one.
+    """
+    t, normals, distances = wall.located(exact)
+    inward = 1.0 if wall.name == "hub" else -1.0
+    by_wall = _off_law(2.0 * t - 1.0, distances, inward)
+    about = wall.places - np.mean(wall.places, axis=0)
+    axes = np.linalg.svd(about, full_matrices=False)[2]
+    way, off = axes @ about.T
+    alone = _off_law(way / np.max(np.abs(way)), off, inward * float(np.sign(np.sum(normals @ axes[1]))))
+    return alone if np.median(alone) < CLEARLY_ALONE * np.median(by_wall) else by_wall
+
+
+def _off_law(along: Reals, distances: Reals, inward: float) -> Reals:
+    """Magnitudes (m,) of what a polynomial along [-1, 1] leaves of distances (m,) of which most follow one.
+
+    First it is that of a quantile, as places beside the row lie inwards of it only.
     Reference: Koenker and Bassett 1978 (quantiles), by iteratively reweighted least squares.
     """
-    t, _, distances = wall.located(exact)
-    inward = 1.0 if wall.name == "hub" else -1.0
-    terms = np.polynomial.chebyshev.chebvander(2.0 * t - 1.0, min(ROW_DEGREE, len(t) // FEWEST_ROW_POINTS - 1))
-    roots, left = np.ones(len(t)), distances
+    terms = np.polynomial.chebyshev.chebvander(along, min(ROW_DEGREE, len(along) // FEWEST_ROW_POINTS - 1))
+    roots, left = np.ones(len(along)), distances
     for _ in range(ROW_TURNS):
         left = distances - terms @ np.linalg.lstsq(roots[:, None] * terms, roots * distances, rcond=None)[0]
         size = np.maximum(np.abs(left), 1e-3 * float(np.median(np.abs(left))))
