@@ -50,7 +50,7 @@ of the places' extent (design/matching_constants.md)"""
 ROW_DEGREE, ROW_TURNS, ROW_SETTLING_TURNS = 6, 30, 3
 """highest degree of the law by which a row may be off the wall, and turns in which it is found as a quantile, then by
 least squares (design/matching_constants.md)"""
-CLEARLY_ALONE = 0.5
+CLEARLY_ALONE = 0.01
 """ratio of medians below which a row is told by a line of its own, not by its wall (design/matching.md)"""
 OUTER_QUANTILE = 0.2
 """share of the places outside the law that is first sought: a row is the outermost (design/matching_constants.md)"""
@@ -188,7 +188,7 @@ def _walls_beside(beside: Sequence[Reals], exact: ExactBlade) -> Iterator[WallPo
 def _off_row(wall: WallPoints, exact: ExactBlade) -> Reals:
     """Distances (m,) [m] from the row in which most places stand, which may be off the wall by a smooth law.
 
-    Where that leaves twice as much, by a law of the row's own off a straight line: a wall that is not found yet may be
+    Where that leaves a hundred times as much, by a law of the row's own off a straight line: a wall that is not found yet may be
     no smooth one.
     """
     t, normals, distances = wall.located(exact)
