@@ -96,6 +96,16 @@ def test_a_row_is_found_where_the_control_points_of_its_wall_crowd():
     assert wall.spread < 1e-6 * model.chord
 
 
+@pytest.mark.parametrize("places", [[0.5], [0.3, 0.5, 0.6], [0.5] * 12])
+def test_a_wall_of_few_places_beside_the_blade_is_one_all_the_same(places):
+    _, _, there = shape(BLADE)
+    points, hub = sides_cloud(BLADE, 50), np.real(there.exact.wall("hub").values(np.array(places)))
+    on = nearest_footpoints(points, there.sides)
+    wall = blade_ends_of(points, on, there, np.ones(len(points), dtype=bool), [hub]).walls["hub"]
+    assert len(wall.places) == len(places)
+    assert np.max(np.abs(wall.located(there.exact)[2])) < 1e-12
+
+
 def test_points_a_little_inside_beside_an_end_are_no_end_face():
     design, model, _ = shape(BLADE)
     blunt = model.shape(

@@ -195,9 +195,10 @@ def _off_row(wall: WallPoints, exact: ExactBlade) -> Reals:
     inward = 1.0 if wall.name == "hub" else -1.0
     by_wall = _off_law(2.0 * t - 1.0, distances, inward)
     about = wall.places - np.mean(wall.places, axis=0)
-    axes = np.linalg.svd(about, full_matrices=False)[2]
-    way, off = axes @ about.T
-    alone = _off_law(way / np.max(np.abs(way)), off, inward * float(np.sign(np.sum(normals @ axes[1]))))
+    across, line = np.linalg.eigh(about.T @ about)[1].T
+    way, off = about @ line, about @ across
+    along = way / max(float(np.max(np.abs(way))), 1e-300)
+    alone = _off_law(along, off, inward * float(np.sign(np.sum(normals @ across))))
     return alone if np.median(alone) < CLEARLY_ALONE * np.median(by_wall) else by_wall
 
 
@@ -207,7 +208,8 @@ def _off_law(along: Reals, distances: Reals, inward: float) -> Reals:
     First it is that of a quantile, as places beside the row lie inwards of it only.
     Reference: Koenker and Bassett 1978 (quantiles), by iteratively reweighted least squares.
     """
-    terms = np.polynomial.chebyshev.chebvander(along, min(ROW_DEGREE, len(along) // FEWEST_ROW_POINTS - 1))
+    degree = min(ROW_DEGREE, max(len(along) // FEWEST_ROW_POINTS - 1, 0))
+    terms = np.polynomial.chebyshev.chebvander(along, degree)
     roots, left = np.ones(len(along)), distances
     for _ in range(ROW_TURNS):
         left = distances - terms @ np.linalg.lstsq(roots[:, None] * terms, roots * distances, rcond=None)[0]
