@@ -176,9 +176,14 @@ class StructureSearch:
         systematic, exact, least = has_systematic_misfit(rich), is_exact(rich), rich.maximum
 
         def predicted(model: LinearModel) -> list[Prediction]:
+            nonlocal systematic
             candidates = eliminated(model, 0)
             if not systematic:
-                return [each for each in candidates if each.deviation <= noise]
+                at_noise = [each for each in candidates if each.deviation <= noise]
+                # exact points that need nearly every control point have another structure: near is enough
+                systematic = exact and min(each.parameters for each in at_noise) > WORTHWHILE * len(rich.problem.paths)
+            if not systematic:
+                return at_noise
             nearest = NEAR_RICH * min((each.largest for each in candidates), default=0.0)
             aim = max(NEAR if exact or nearest <= EXACT else ENOUGH, nearest)
             return [each for each in candidates if each.largest <= aim]
