@@ -145,3 +145,23 @@ def test_a_match_is_sought_again_where_it_is_clearly_further_off_than_the_rich_o
     monkeypatch.setattr(StructureSearch, "within", lambda *_: (of["nearer"], ""))
     search = StructureSearch(task=None, samples=0, first=None)
     assert search.near_everywhere(of["rich"]) is of["nearer" if again else "found"]
+
+
+@pytest.mark.parametrize(("exact", "needed", "fewest"), [(True, 38, 12), (True, 20, 20), (False, 38, 38)])
+def test_exact_points_that_need_nearly_every_control_point_are_met_nearly(monkeypatch, exact, needed, fewest):
+    # fewer control points than the noise needs leave more than it, and fewer than 12 more than 1e-4 somewhere
+    at_noise, near, far = (1e-9, 1e-8), (1e-6, 3e-5), (1e-4, 1e-3)
+    left = {n: at_noise if n >= needed else near if n >= 12 else far for n in range(RICH, 8, -1)}
+    predictions = [SimpleNamespace(parameters=n, deviation=d, largest=most) for n, (d, most) in left.items()]
+    model = SimpleNamespace(counts=(), points=1000, prediction=lambda _: predictions[0])
+    offered = []
+    monkeypatch.setattr(structure_search, "eliminated", lambda *_: predictions)
+    monkeypatch.setattr(structure_search, "has_systematic_misfit", lambda _: False)
+    monkeypatch.setattr(structure_search, "is_exact", lambda _: exact)
+    monkeypatch.setattr(StructureSearch, "_model", lambda *_: model)
+    monkeypatch.setattr(
+        StructureSearch, "_fewest", lambda *_, predicted, **__: (offered.extend(predicted(model)), None)
+    )
+    rich = match(RICH, 1e-8)
+    StructureSearch(task=None, samples=0, first=None).well_predicted(rich)
+    assert min(each.parameters for each in offered) == fewest
