@@ -88,7 +88,6 @@ def test_a_richer_structure_that_is_no_nearer_ends_the_search_for_rich_ones(monk
 
     for name, stand_in in {
         "searched": search,
-        "without_false_outliers": lambda _, match: match,
         "has_systematic_misfit": lambda _: True,
         "rich_structure": lambda *_, **__: None,
         "wider_structure": lambda *_, **__: None,

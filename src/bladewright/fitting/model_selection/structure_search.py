@@ -27,7 +27,6 @@ from bladewright.fitting.matching.search import (
     is_exact,
     is_refused,
     searched,
-    without_false_outliers,
 )
 from bladewright.fitting.model_selection.elimination import (
     LARGEST_PREDICTED,
@@ -110,7 +109,6 @@ class StructureSearch:
                     wide = evaluated(self.task, design, noise=found.rms)
                     design = self._without_surplus(wide, EXPLAINED * found.rms)
                 richer = search(self.task, design, noise=found.rms, enough=lambda each: each.maximum <= least)
-                richer = without_false_outliers(self.task, richer)
             except (DesignError, FitError):
                 break
             limit = target.tolerance or NEAR_EVERYWHERE * match.model.chord
