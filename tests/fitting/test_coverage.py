@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from bladewright.fitting.assessment.coverage import (
+    ShapeBands,
+    bare_places,
     bare_stretches,
-    past_points,
     shape_bands,
     uncovered_edges,
 )
@@ -192,7 +193,7 @@ def test_an_end_without_points_on_a_part_of_the_chord_is_bare_there_alone():
     free = free_parameters_of("stagger", None, started=True)
     found = searched(Task(points=points, weights=np.ones(len(points)), free=free, bounds={}), design, rounds=0)
     side, u, v = np.array([0, 1, 0, 1, 0]), np.array([0.3, 0.3, 0.1, 0.9, 0.3]), np.array([0.0, 0.1, 0.01, 0.01, 0.5])
-    past = past_points(found, side, u, v)
+    past = bare_places(found, ShapeBands(side=side, u=u, v=v, half_widths=np.zeros(5)), known=np.ones(5, dtype=bool))
     assert (past["hub"] | past["shroud"]).tolist() == [True, True, False, False, False]
 
 
@@ -204,5 +205,5 @@ def test_an_edge_without_points_on_a_part_of_the_span_is_bare_there_alone():
     free = free_parameters_of("stagger", None, started=True)
     found = searched(Task(points=points, weights=np.ones(len(points)), free=free, bounds={}), design, rounds=0)
     side, u, v = np.array([0, 1, 0, 1, 0]), np.array([0.0, 0.05, 0.0, 0.05, 0.5]), np.array([0.1, 0.1, 0.9, 0.9, 0.1])
-    past = past_points(found, side, u, v)
+    past = bare_places(found, ShapeBands(side=side, u=u, v=v, half_widths=np.zeros(5)), known=np.ones(5, dtype=bool))
     assert (past["leading edge"] | past["trailing edge"]).tolist() == [True, True, True, False, False]

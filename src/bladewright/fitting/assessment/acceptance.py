@@ -12,11 +12,11 @@ from scipy.special import bdtrc
 from bladewright.fitting.assessment.coverage import (
     NORMAL_95,
     ShapeBands,
+    bare_places,
     bare_stretches,
     foreign_edges,
     least_thickness,
     loose_ends,
-    past_points,
     shape_bands,
     uncovered_edges,
 )
@@ -24,7 +24,6 @@ from bladewright.fitting.assessment.estimates import ParameterEstimates
 from bladewright.fitting.assessment.measurement import Measurement
 from bladewright.fitting.assessment.result import with_unit
 from bladewright.fitting.clouds.thinning import groups
-from bladewright.fitting.matching.blade_ends import END_PARAMETERS
 from bladewright.fitting.matching.footpoints import BETWEEN_EDGES, EDGE_PARAMETERS, Footpoints
 from bladewright.fitting.matching.noise import (
     EXACT,
@@ -253,23 +252,13 @@ class Acceptance:
     @cached_property
     def _limits(self) -> Reals:
         """How well the shape is to be known at places (n,) where nothing is asked [m]."""
-        at_edge = np.minimum(self._bands.u, 1.0 - self._bands.u) < BETWEEN_EDGES
-        return np.where(at_edge, GROSS_DEVIATION[1], SHOWN_SIDE) * self.match.model.chord
+        return np.where(self._bands.at_edge, GROSS_DEVIATION[1], SHOWN_SIDE) * self.match.model.chord
 
     @cached_property
     def _bare(self) -> dict[str, NDArray[np.bool_]]:
         """Which places (n,) are at an edge or an end past all points there, while it is known elsewhere along it."""
-        bands = self._bands
-        known, found = bands.half_widths <= GROSS_DEVIATION[1] * self.match.model.chord, {}
-        for name, past in past_points(self.match, bands.side, bands.u, bands.v).items():
-            if name in EDGE_PARAMETERS:
-                away = np.abs(bands.u - EDGE_PARAMETERS[name])
-                near = away < BETWEEN_EDGES
-            else:
-                away = np.abs(bands.v - END_PARAMETERS[name])
-                near = known & (away < 0.5)
-            found[name] = past & near & np.any(known[away == 0.0])
-        return found
+        known = self._bands.half_widths <= GROSS_DEVIATION[1] * self.match.model.chord
+        return bare_places(self.match, self._bands, known)
 
     def _not_shown(self) -> Iterator[str]:
         """Where the shape is known less well than is trusted, and than one point there would show it."""

@@ -12,7 +12,7 @@ from scipy.special import fdtri, ndtri
 from bladewright.fitting.assessment.estimates import shape_covariance
 from bladewright.fitting.free_parameters import parameters_of_curve
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS
-from bladewright.fitting.matching.footpoints import EDGE_PARAMETERS, Side, footpoints_at, part_of
+from bladewright.fitting.matching.footpoints import BETWEEN_EDGES, EDGE_PARAMETERS, Side, footpoints_at, part_of
 from bladewright.fitting.matching.noise import EXACT, SIGNIFICANCE
 from bladewright.fitting.matching.search import Match
 from bladewright.numerics.elementary import cumulative_length
@@ -64,6 +64,11 @@ class ShapeBands:
     v: Reals
     half_widths: Reals
     """(n,) half the 95 % intervals along the normals [m]"""
+
+    @property
+    def at_edge(self) -> NDArray[np.bool_]:
+        """(n,) whether a place is beside an edge, and not between them."""
+        return np.minimum(self.u, 1.0 - self.u) < BETWEEN_EDGES
 
 
 def loose_ends(match: Match) -> dict[str, float]:
@@ -195,19 +200,20 @@ def shape_bands(match: Match) -> ShapeBands:
     return ShapeBands(side=side, u=u, v=v, half_widths=NORMAL_95 * np.sqrt(np.maximum(variances, 0.0)))
 
 
-def past_points(match: Match, side: NDArray[np.intp], u: Reals, v: Reals) -> dict[str, NDArray[np.bool_]]:
-    """Which places (n,) are nearer to each edge and end than all points of their side, outliers too.
+def bare_places(match: Match, bands: ShapeBands, known: NDArray[np.bool_]) -> dict[str, NDArray[np.bool_]]:
+    """Which places (n,) at each edge and end are past all points of their side, outliers too, where others are known.
 
     Compared are points of the same of five parts of the span, and of the chord. Sections have no ends.
     """
     feet, found = match.state.footpoints, {}
-    borders = {name: (end, u, v, feet.u, feet.v) for name, end in EDGE_PARAMETERS.items()}
+    borders = {name: (end, bands.at_edge, bands.u, bands.v, feet.u, feet.v) for name, end in EDGE_PARAMETERS.items()}
     if match.state.shape.exact is not None:
-        borders |= {name: (end, v, u, feet.v, feet.u) for name, end in END_PARAMETERS.items()}
-    for name, (end, at, across, own, own_across) in borders.items():
-        nearest = np.full(2 * PARTS, np.inf)
+        borders |= {name: (end, known, bands.v, bands.u, feet.v, feet.u) for name, end in END_PARAMETERS.items()}
+    for name, (end, near, at, across, own, own_across) in borders.items():
+        nearest, away = np.full(2 * PARTS, np.inf), np.abs(at - end)
         np.minimum.at(nearest, _part_of(feet.side, own_across), np.abs(own - end))
-        found[name] = np.abs(at - end) < nearest[_part_of(side, across)]
+        past = away < np.minimum(nearest[_part_of(bands.side, across)], 0.5)
+        found[name] = past & near & np.any(known[away == 0.0])
     return found
 
 
