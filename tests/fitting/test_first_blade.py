@@ -7,6 +7,7 @@ import pytest
 
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.blade.native.blade import Blade
+from bladewright.domain.row import turn_matrix
 from bladewright.errors import FitError
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.blade import (
@@ -18,7 +19,7 @@ from bladewright.fitting.initial_guess.blade import (
     likely_arrangements,
     spans_along_y,
 )
-from bladewright.fitting.matching.search import ROUGH_REDUCTION, Task, about_x, evaluated, searched
+from bladewright.fitting.matching.search import ROUGH_REDUCTION, Task, evaluated, searched
 from bladewright.fitting.model_selection.other_minima import nearest_from_other_edges
 from bladewright.fitting.model_selection.selection import GUESS_NOISE
 from bladewright.nurbs.closest import closest_on_surface
@@ -144,7 +145,7 @@ def test_a_cascade_whose_span_lies_along_y_is_told_from_one_along_z() -> None:
 
 
 def test_what_seems_to_stand_around_the_axis_may_be_of_a_cascade_with_its_span_along_y() -> None:
-    points = _cloud(_truth("vki-ls89"), 400) @ about_x(-UPRIGHT).T
+    points = _cloud(_truth("vki-ls89"), 400) @ turn_matrix(-UPRIGHT).T
     found = [(turn, arrangement) for turn, arrangement, _ in likely_arrangements(points, None)]
     assert found == [(0.0, "annular"), (UPRIGHT, "linear")]
     assert [seen for _, seen, _ in likely_arrangements(points, "annular")] == ["annular"]
@@ -155,16 +156,16 @@ def test_what_cannot_be_sliced_as_a_cascade_still_stands_around_the_axis(monkeyp
         raise FitError("no slices")
 
     monkeypatch.setattr("bladewright.fitting.initial_guess.blade.spans_along_y", refused)
-    found = likely_arrangements(_cloud(_truth("vki-ls89"), 400) @ about_x(-UPRIGHT).T, None)
+    found = likely_arrangements(_cloud(_truth("vki-ls89"), 400) @ turn_matrix(-UPRIGHT).T, None)
     assert [seen for _, seen, _ in found] == ["annular"]
 
 
 @pytest.mark.slow
 def test_a_first_blade_that_is_far_around_the_axis_is_sought_in_a_cascade() -> None:
-    points = _cloud(_truth("vki-ls89"), 400) @ about_x(-UPRIGHT).T
+    points = _cloud(_truth("vki-ls89"), 400) @ turn_matrix(-UPRIGHT).T
     found = first_blade(points)
     assert found.turn == UPRIGHT
-    assert _share(found.design, points @ about_x(found.turn).T) < 0.01
+    assert _share(found.design, points @ turn_matrix(found.turn).T) < 0.01
 
 
 def _with_rows(blade: Blade, draw: np.random.Generator, noise: float = 0.0) -> np.ndarray:

@@ -6,13 +6,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from bladewright.domain.row import turn_matrix
 from bladewright.fitting import placing
 from bladewright.fitting.assessment.result import Motion
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.residuals import PlacedCloud
-from bladewright.fitting.matching.search import Task, about_x, evaluated
+from bladewright.fitting.matching.search import Task, evaluated
 from bladewright.fitting.registration import motion_by, motion_rates
 from machines import COARSE, built, example
 
@@ -96,7 +97,7 @@ def test_residuals_change_with_the_motion_as_differences_say():
 
 def test_a_match_of_points_turned_about_the_axis_says_by_how_much():
     given = np.random.default_rng(1).normal(size=(5, 3))
-    motion = Motion(rotation=about_x(0.2), translation=np.array([0.1, 0.0, 0.3]))
+    motion = Motion(rotation=turn_matrix(0.2), translation=np.array([0.1, 0.0, 0.3]))
     task = Task(points=motion(given), weights=np.ones(5), free=FreeParameters(), bounds={})
     here = placing.PlacedTask(motion=motion, notes=(), start=None, every=task, shown=task, hidden=None)
     assert placing.turned_with(here, SimpleNamespace(turn=0.0)) is here

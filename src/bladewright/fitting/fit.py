@@ -15,6 +15,7 @@ from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.blade.native.extrema import extrema_of
 from bladewright.derivatives.patterns import Patterns
 from bladewright.designs import Design
+from bladewright.domain.row import turn_matrix
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import Acceptance, MatchTarget
 from bladewright.fitting.assessment.estimates import parameter_estimates
@@ -30,7 +31,7 @@ from bladewright.fitting.families.unified import matched_unified
 from bladewright.fitting.free_parameters import FreeParameters, free_parameters_of
 from bladewright.fitting.initial_guess.blade import UPRIGHT, spans_along_y
 from bladewright.fitting.matching.noise import EXACT
-from bladewright.fitting.matching.search import Match, Progress, Task, about_x
+from bladewright.fitting.matching.search import Match, Progress, Task
 from bladewright.fitting.placing import (
     UPRIGHT_NOTE,
     Matched,
@@ -181,7 +182,7 @@ def _ways_of(
     motion = None if axis is None else axis_motion(axis, points.shape[1])
     cascade = header.arrangement == "linear" and points.shape[1] == 3 and not given
     if cascade and spans_along_y(points if motion is None else motion(points)):
-        turn = Motion(rotation=about_x(UPRIGHT), translation=np.zeros(3))
+        turn = Motion(rotation=turn_matrix(UPRIGHT), translation=np.zeros(3))
         return [(turn if motion is None else composed(turn, motion), (UPRIGHT_NOTE,))]
     return [(motion, ())]
 

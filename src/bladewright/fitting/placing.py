@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from bladewright.blade.design.row_design import RowDesign
 from bladewright.designs import Design, unit_at
+from bladewright.domain.row import turn_matrix
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.measurement import off_walls
 from bladewright.fitting.assessment.result import Motion
@@ -31,7 +32,6 @@ from bladewright.fitting.matching.search import (
     ROUGH_REDUCTION,
     Match,
     Task,
-    about_x,
     has_systematic_misfit,
     searched,
 )
@@ -122,7 +122,7 @@ def turned_with(here: PlacedTask, match: Match) -> PlacedTask:
     """What was sought, with the points turned about x as a match of them is."""
     if not match.turn:
         return here
-    step = Motion(rotation=about_x(match.turn), translation=np.zeros(3))
+    step = Motion(rotation=turn_matrix(match.turn), translation=np.zeros(3))
     linear = getattr(match.design, "arrangement", None) == "linear"
     return replace(
         here,

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, cKDTree
+from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from bladewright.blade.design.row_design import Arrangement
@@ -20,8 +20,10 @@ from bladewright.designs import Design
 from bladewright.errors import FitError
 from bladewright.fitting.assessment.result import Motion
 from bladewright.fitting.clouds.thinning import MOST_POINTS, even_subset, random_subset, without_isolated_points
+from bladewright.fitting.initial_guess.slices import furthest_apart
 from bladewright.fitting.matching.footpoints import Footpoints, Side, concatenated, footpoints_at, nearest_footpoints
 from bladewright.fitting.models.blunt_edges import sides_of
+from bladewright.numerics.elementary import length
 from bladewright.numerics.robust import TUKEY_WIDTH, median_deviation, tukey_weights
 from bladewright.nurbs.basis import Reals
 
@@ -100,7 +102,7 @@ def registrations(points: Reals, design: Design) -> list[tuple[Motion, tuple[str
     tried = sorted((_rough(few, samples, tree, start, extent) for start in starts), key=lambda each: each[0])
     apart = list[Motion]()
     for off, motion in tried:
-        same = (np.max(_lengths(motion(few) - other(few))) < FIRST_WIDTH * extent for other in apart)
+        same = (np.max(length(motion(few) - other(few))) < FIRST_WIDTH * extent for other in apart)
         if off <= AMBIGUOUS * tried[0][0] and not any(same):
             apart.append(motion)
     found = [_followed(some, motion, touching, extent) for motion in apart]
@@ -161,25 +163,21 @@ def _rough(points: Reals, samples: Footpoints, tree: cKDTree, motion: Motion, ex
             moved = motion(points)
             motion = composed(_step(moved, contact(moved, planes=planes), 0.0, extent, weakest), motion)
     miss, _, directions = contact(motion(points), planes=True)
-    distances = _lengths(miss)
+    distances = length(miss)
     # between samples only the distance from the tangent plane says how far a point is off
     aside = np.where(distances > spacing, distances, np.abs(np.sum(directions * miss, axis=1)))
     return float(np.mean(np.minimum(aside, FIRST_WIDTH * extent))), motion
 
 
-def _lengths(vectors: Reals) -> Reals:
-    return np.asarray(np.sqrt(np.sum(vectors**2, axis=1)))
-
-
 def _noise_width(contact: Contact) -> float:
     """Width of the weights that the points' own distances call for."""
-    return TUKEY_WIDTH * median_deviation(_lengths(contact[0]))
+    return TUKEY_WIDTH * median_deviation(length(contact[0]))
 
 
 def _equations(moved: Reals, contact: Contact, width: float, extent: float) -> tuple[Reals, Reals]:
     """Weighted rows (m, k) of what turns about the middle and shifts, as lengths, do to distances; right sides (m,)."""
     miss, rows, directions = contact
-    root = np.sqrt(tukey_weights(_lengths(miss), max(width, _noise_width(contact))))[rows]
+    root = np.sqrt(tukey_weights(length(miss), max(width, _noise_width(contact))))[rows]
     rates = motion_rates(moved, np.mean(moved, axis=0))[rows] * motion_scale(moved.shape[1], extent)
     return np.einsum("md,mdk->mk", directions, rates) * root[:, None], -np.sum(directions * miss[rows], axis=1) * root
 
@@ -193,7 +191,7 @@ def _step(moved: Reals, contact: Contact, width: float, extent: float, weakest: 
 
 def _notes(moved: Reals, contact: Contact, extent: float, chord: float) -> tuple[str, ...]:
     """What there is to say where the points do not determine the motion, or are of another blade."""
-    distances = _lengths(contact[0])
+    distances = length(contact[0])
     share, typical = float(np.mean(distances <= OTHER_BLADE * chord)), median_deviation(distances)
     rows, right = _equations(moved, contact, LEAST_WIDTH * extent, extent)
     deviation = np.sqrt(np.sum(right**2) / max(1, int(np.count_nonzero(right)) - rows.shape[1]))
@@ -372,11 +370,8 @@ def _across(direction: Reals) -> Reals:
 
 def _chord(flat: Reals) -> Reals:
     """Leading and trailing edge (2, 2) of a section: its points that are furthest apart, the thicker end first."""
-    hull = flat[ConvexHull(flat).vertices]
-    square = np.sum((hull[:, None] - hull[None]) ** 2, axis=-1)
-    i, j = np.unravel_index(np.argmax(square), square.shape)
-    one, other = hull[i], hull[j]
-    along = (other - one) / square[i, j]
+    one, other = furthest_apart(flat)
+    along = (other - one) / np.sum((other - one) ** 2)
     x, y = (flat - one) @ along, (flat - one) @ np.array([-along[1], along[0]])
     first, last = (np.ptp(y[near]) for near in (x < EDGE, x > 1.0 - EDGE))
     return np.array([one, other] if first >= last else [other, one])

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
+from bladewright.domain.row import turn_matrix
 from bladewright.errors import FitError
 from bladewright.fitting.clouds.thinning import MOST_POINTS, even_subset, groups, random_subset
 from bladewright.nurbs.basis import Reals
@@ -156,7 +157,7 @@ def _moved_onto(piece: Reals, other: Reals) -> tuple[float, str] | None:
         angles = [np.arctan2(np.mean(p[:, 1]), np.mean(p[:, 2])) for p in (piece, other)]
         turn = float((angles[1] - angles[0] + np.pi) % (2.0 * np.pi) - np.pi)
         radius = float(np.mean(np.sqrt(piece[:, 1] ** 2 + piece[:, 2] ** 2)))
-        moved.append((_turned(piece, turn), abs(turn) * radius, f"{abs(np.degrees(turn)):.4g} deg"))
+        moved.append((piece @ turn_matrix(turn).T, abs(turn) * radius, f"{abs(np.degrees(turn)):.4g} deg"))
     missed = [max(np.mean(tree.query(copy)[0]), np.mean(cKDTree(copy).query(other)[0])) for copy, *_ in moved]
     best = int(np.argmin(missed))
     return moved[best][1:] if missed[best] < near else None
@@ -170,15 +171,9 @@ def _pitch_of_wheel(points: Reals) -> str | None:
     tree, some = cKDTree(points), points[random_subset(len(points), TURNED_POINTS)]
 
     def away(turn: float) -> float:
-        return float(np.median(np.max([tree.query(_turned(some, each))[0] for each in (turn, -turn)], axis=0)))
+        return float(np.median(np.max([tree.query(some @ turn_matrix(each).T)[0] for each in (turn, -turn)], axis=0)))
 
     whole = np.array([away(2.0 * np.pi / count) for count in BLADE_COUNTS])
     lowest = 1 + np.flatnonzero(whole[1:-1] < np.minimum(whole[:-2], whole[2:]))
     counts = [BLADE_COUNTS[i] for i in lowest if whole[i] < 0.5 * away(np.pi / BLADE_COUNTS[i])]
     return f"{360.0 / max(counts):.4g} deg" if counts else None
-
-
-def _turned(points: Reals, turn: float) -> Reals:
-    """Points (n, 3) turned about x [rad], from z towards y."""
-    (x, y, z), c, s = points.T, np.cos(turn), np.sin(turn)
-    return np.stack([x, c * y + s * z, c * z - s * y], axis=-1)

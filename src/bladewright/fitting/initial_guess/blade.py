@@ -14,14 +14,14 @@ import numpy as np
 
 from bladewright.blade.design.row_design import Arrangement, LengthUnit
 from bladewright.blade.design.unified import UnifiedBlade
+from bladewright.domain.row import turn_matrix
 from bladewright.errors import BladewrightError, FitError
 from bladewright.fitting.assessment.acceptance import AXES_HINT, GROSS_DEVIATION
 from bladewright.fitting.clouds.thinning import even_subset, random_subset, without_isolated_points
-from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.channel import SlicedChannel, machine_coordinates, ranked_channels
 from bladewright.fitting.initial_guess.slices import PLACES, fitted_law, unified_numbers
 from bladewright.fitting.matching.blade_ends import ROW_LEAST_WIDTH, ROW_SPREAD
-from bladewright.fitting.matching.search import Task, about_x, evaluated, searched
+from bladewright.fitting.matching.search import Task, evaluated, searched
 from bladewright.fitting.model_selection.structure import FIRST_BLADE, widened_where_feasible, with_feasible_edges
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
@@ -65,7 +65,7 @@ def first_blade(
     for turn, seen, channels in likely_arrangements(points, arrangement):
         try:
             begun = {**header, "arrangement": seen}
-            tried.append(_searched_blade(points @ about_x(turn).T, channels, begun, turn))
+            tried.append(_searched_blade(points @ turn_matrix(turn).T, channels, begun, turn))
         except FitError as error:
             refusals.append(error)
             continue
@@ -88,7 +88,7 @@ def arranged_blades(points: Reals, *, arrangement: Arrangement | None = None, **
         return [first]
     try:
         turn = UPRIGHT if spans_along_y(points) else 0.0
-        other = replace(first_blade(points @ about_x(turn).T, arrangement="linear", **header), turn=turn)
+        other = replace(first_blade(points @ turn_matrix(turn).T, arrangement="linear", **header), turn=turn)
     except BladewrightError:
         # what cannot be sliced as a cascade is none
         return [first]
@@ -100,7 +100,7 @@ def arranged_blades(points: Reals, *, arrangement: Arrangement | None = None, **
 
 def _row_spread(points: Reals, begun: FirstBlade) -> float:
     """Scatter of points (n, 3) [m] at both ends of a first blade about rows beside its walls, of its chord; or inf."""
-    task = Task(points=points @ about_x(begun.turn).T, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
+    task = Task(points=points @ turn_matrix(begun.turn).T, weights=np.ones(len(points)))
     try:
         found = evaluated(task, begun.design, noise=NOISE)
     except FitError:
@@ -125,7 +125,7 @@ def likely_arrangements(
     with suppress(BladewrightError):
         if arrangement is None and seen == "annular":
             turn = UPRIGHT if spans_along_y(points) else 0.0
-            yield turn, *arranged_channels(points @ about_x(turn).T, "linear")
+            yield turn, *arranged_channels(points @ turn_matrix(turn).T, "linear")
 
 
 def _searched_blade(
@@ -137,7 +137,7 @@ def _searched_blade(
     """
     points = points[even_subset(points, DRAWN_POINTS)]
     some = points[random_subset(len(points), SEARCHED_POINTS)]
-    task = Task(points=some, weights=np.ones(len(some)), free=FreeParameters(), bounds={}, preliminary=True)
+    task = Task(points=some, weights=np.ones(len(some)), preliminary=True)
     refusal: BladewrightError | None = None
     for sliced in channels:
         try:

@@ -5,7 +5,6 @@ import numpy as np
 from bladewright.blade.design.row_design import LengthUnit
 from bladewright.errors import BladewrightError, FitError
 from bladewright.fitting.clouds.thinning import even_subset, without_isolated_points
-from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.slices import STEEPEST, PlanePoints, longest_chord, slices_of, unified_numbers
 from bladewright.fitting.matching.search import Match, Task, searched
 from bladewright.fitting.model_selection.structure import FIRST_SECTION, Structure, with_feasible_edges
@@ -39,7 +38,7 @@ def first_section(
     start, extent = np.array([np.min(points[:, 0]), np.mean(points[:, 1])]), np.ptp(points[:, 0])
     metre, longest = UNITS[length_unit], longest_chord(points)
     plane = PlanePoints(points=(points - start) / extent, v=np.zeros(len(points)))
-    task = Task(points=points, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
+    task = Task(points=points, weights=np.ones(len(points)))
     best: Match | None = None
     refusal: BladewrightError | None = None
     for turn in TURNS:

@@ -187,13 +187,17 @@ def chord_direction(plane: PlanePoints) -> Reals:
     return np.clip(law, -STEEPEST, STEEPEST)
 
 
+def furthest_apart(points: Reals) -> Reals:
+    """The two (2, 2) of points (n, 2) with the longest distance between them."""
+    corners = points[ConvexHull(points).vertices]
+    square = np.sum((corners[:, None] - corners) ** 2, axis=-1)
+    return corners[list(np.unravel_index(int(np.argmax(square)), square.shape))]
+
+
 def longest_chord(points: Reals) -> float:
     """Direction [rad], towards larger abscissae, of the longest distance between two of points (n, 2)."""
-    corners = points[ConvexHull(points).vertices]
-    apart = corners[:, None] - corners
-    i, j = np.unravel_index(int(np.argmax(np.sum(apart**2, axis=-1))), apart.shape[:2])
-    along = apart[i, j] if apart[i, j, 0] > 0.0 else -apart[i, j]
-    return float(np.arctan2(along[1], along[0]))
+    x, y = np.diff(furthest_apart(points), axis=0)[0]
+    return float(np.arctan2(y, x) if x > 0.0 else np.arctan2(-y, -x))
 
 
 def _half_basis(t: Reals) -> Reals:

@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bladewright.designs import Design
+from bladewright.domain.row import turn_matrix
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.clouds.thinning import random_subset
+from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching.best_so_far import BestSoFar
 from bladewright.fitting.matching.blade_ends import BladeEnds, blade_ends_of, edge_overhang_of
 from bladewright.fitting.matching.footpoints import nearest_footpoints
@@ -59,12 +61,6 @@ Progress = Callable[[str], None]
 """is handed a few words on what is done"""
 
 
-def about_x(angle: float) -> Reals:
-    """The rotation (3, 3) about x by which theta grows by an angle [rad]."""
-    cosine, sine = np.cos(angle), np.sin(angle)
-    return np.array([[1.0, 0.0, 0.0], [0.0, cosine, sine], [0.0, -sine, cosine]])
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Task:
     """What is sought: points, weights, free parameters and bounds."""
@@ -73,9 +69,9 @@ class Task:
     """(n, d) of the cloud [m]"""
     weights: Reals
     """(n,) of the points in the sum of squares, 1 on average"""
-    free: Callable[[Design], tuple[str, ...]]
+    free: Callable[[Design], tuple[str, ...]] = field(default_factory=FreeParameters)
     """the free parameters of a design, whatever its structure"""
-    bounds: Mapping[str, tuple[float, float]]
+    bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """lowest and highest values by pattern, in the units of the fields"""
     progress: Progress = lambda _: None
     regularisation_factor: float = 1.0
@@ -115,7 +111,7 @@ class Task:
         """The same task with its points (n, 3) turned about x, so that theta grows by an angle [rad]."""
         if not angle:
             return self
-        return replace(self, points=self.points @ about_x(angle).T, turn=self.turn + angle)
+        return replace(self, points=self.points @ turn_matrix(angle).T, turn=self.turn + angle)
 
     def without(self, paths: Collection[str]) -> "Task":
         """The same task with some parameters that do not change."""
