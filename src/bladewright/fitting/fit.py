@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import partial
 from typing import Any, Literal
 
@@ -19,7 +19,7 @@ from bladewright.domain.row import turn_matrix
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import Acceptance, MatchTarget
 from bladewright.fitting.assessment.estimates import parameter_estimates
-from bladewright.fitting.assessment.measurement import measured
+from bladewright.fitting.assessment.measurement import PlacesOfPoints, measured
 from bladewright.fitting.assessment.result import Fit, Motion
 from bladewright.fitting.clouds.cloud import checked_cloud, refuse_hidden_blade, refuse_several_blades
 from bladewright.fitting.clouds.thinning import MOST_POINTS, isolated_points
@@ -300,18 +300,8 @@ def _reported(
         design=design,
         built=built,
         cloud=task.points,
-        places=measurement.places,
-        u=measurement.footpoints.u,
-        v=measurement.footpoints.v,
-        deviations=measurement.deviations,
-        regions=measurement.regions,
-        inliers=measurement.inliers,
-        set_aside=measurement.set_aside,
-        estimates=statistics.estimates,
-        covariance=statistics.covariance,
-        rank=statistics.rank,
-        condition=statistics.condition,
-        noise=measurement.noise,
+        **{each.name: getattr(measurement, each.name) for each in fields(PlacesOfPoints)},
+        **vars(statistics),
         extrema=extrema,
         tolerance=target.tolerance,
         failures=(*acceptance.failures(), *failures),

@@ -1,5 +1,7 @@
 """What a cloud says of each parameter: covariance, intervals, and what it does not determine."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -51,10 +53,13 @@ class ParameterEstimates:
     """How well the parameters of a match are known."""
 
     estimates: tuple[Estimate, ...]
+    """the free parameters"""
     covariance: Reals
-    """(k, k) in the units of the fields"""
+    """(k, k) of the free parameters, in their order and the units of their fields"""
     rank: int
+    """number of directions in the space of the parameters that the cloud determines"""
     condition: float
+    """ratio of the largest to the smallest singular value of the scaled problem"""
 
 
 def parameter_estimates(match: Match) -> ParameterEstimates:

@@ -1,5 +1,7 @@
 """The final measurement of a match: every point of the cloud against what the design builds."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,26 +30,39 @@ rule (Pukelsheim 1994)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Measurement:
+class PlacesOfPoints:
     """Where the n points of a cloud lie on what was built."""
 
     places: NDArray[np.str_]
-    footpoints: Footpoints
+    """(n,) name of the nearest curve or surface: `upper`, `lower`, or one of the blade's ends or faces"""
+    u: Reals
+    """(n,) parameter of the nearest place along the chord"""
+    v: Reals
+    """(n,) parameter of the nearest place along the span; 0 for a section"""
     deviations: Reals
+    """(n,) distance from the nearest place, positive outside the blade [m]"""
     regions: NDArray[np.str_]
+    """(n,) region of each point: `sides`, `leading edge`, `trailing edge` or `ends`"""
     inliers: NDArray[np.bool_]
-    """(n,) whether a point takes part; the others are outliers, or set aside"""
-    noise: float
-    """standard deviation of the cloud's own noise [m]"""
-    faced: NDArray[np.bool_]
-    """(n,) whether an outlier lies on an end face, as the points of a solid's faces do"""
+    """(n,) whether a point took part; the others are outliers, or set aside"""
     set_aside: NDArray[np.str_]
-    """(n,) what a point lies on that is none of the sides, such as `hub fillet`; empty where it takes part"""
+    """(n,) what a point lies on that is none of the sides, such as `hub fillet`; empty where it took part"""
+    noise: float
+    """standard deviation of the cloud's own noise, as neighbouring points show it [m]"""
 
     @property
     def distances(self) -> Reals:
-        """(n,) true distances [m]."""
+        """(n,) true distances from the surface [m]."""
         return np.sqrt(self.deviations**2)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Measurement(PlacesOfPoints):
+    """Where the n points of a cloud lie on what was built, with the footpoints before cuts and fillets."""
+
+    footpoints: Footpoints
+    faced: NDArray[np.bool_]
+    """(n,) whether an outlier lies on an end face, as the points of a solid's faces do"""
 
     @property
     def outliers(self) -> NDArray[np.bool_]:
@@ -106,6 +121,8 @@ def measured(
             places[rows[nearer]], regions[rows[nearer]] = face, "ends"
     return Measurement(
         places=places,
+        u=footpoints.u,
+        v=footpoints.v,
         footpoints=footpoints,
         deviations=deviations,
         regions=regions,

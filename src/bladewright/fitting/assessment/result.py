@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from bladewright.designs import Design, unit_at
 from bladewright.display import Shown
-from bladewright.fitting.assessment.estimates import Estimate
+from bladewright.fitting.assessment.estimates import ParameterEstimates
+from bladewright.fitting.assessment.measurement import PlacesOfPoints
 from bladewright.frozen import FrozenRecord
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
@@ -69,7 +70,7 @@ def deviation_of(distances: Reals) -> Deviation:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Fit(FrozenRecord, Shown):
+class Fit(PlacesOfPoints, ParameterEstimates, FrozenRecord, Shown):
     """A design fitted to a cloud of n points, and what it reaches; points are in the order of the cloud."""
 
     shown_as: ClassVar[str] = "fit"
@@ -80,30 +81,6 @@ class Fit(FrozenRecord, Shown):
     """what the design builds: a `Blade` or a `Section`"""
     cloud: Reals
     """(n, 2) or (n, 3) the points in the machine's axes, after `motion` where there is one [m]"""
-    places: NDArray[np.str_]
-    """(n,) name of the nearest curve or surface: `upper`, `lower`, or one of the blade's ends or faces"""
-    u: Reals
-    """(n,) parameter of the nearest place along the chord"""
-    v: Reals
-    """(n,) parameter of the nearest place along the span; 0 for a section"""
-    deviations: Reals
-    """(n,) distance from the nearest place, positive outside the blade [m]"""
-    regions: NDArray[np.str_]
-    """(n,) region of each point: `sides`, `leading edge`, `trailing edge` or `ends`"""
-    inliers: NDArray[np.bool_]
-    """(n,) whether a point took part; the others are outliers, or set aside"""
-    set_aside: NDArray[np.str_]
-    """(n,) what a point lies on that is none of the sides, such as `hub fillet`; empty where it took part"""
-    estimates: tuple[Estimate, ...]
-    """the free parameters"""
-    covariance: Reals
-    """(k, k) of the free parameters, in their order and the units of their fields"""
-    rank: int
-    """number of directions in the space of the parameters that the cloud determines"""
-    condition: float
-    """ratio of the largest to the smallest singular value of the scaled problem"""
-    noise: float
-    """standard deviation of the cloud's own noise, as neighbouring points show it [m]"""
     extrema: Mapping[str, int]
     """number of extrema of the curvature of each side, the most of any section; empty where sections cannot be made"""
     tolerance: float | None
@@ -122,11 +99,6 @@ class Fit(FrozenRecord, Shown):
     def passed(self) -> bool:
         """Whether nothing failed."""
         return not self.failures
-
-    @property
-    def distances(self) -> Reals:
-        """(n,) true distances from the surface [m]."""
-        return np.sqrt(self.deviations**2)
 
     @cached_property
     def deviation(self) -> Deviation:
