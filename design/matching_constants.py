@@ -40,7 +40,7 @@ ROWS = {
     "registration.py": ("aligned-fan", "aligned-turbine", "prism-aachen"),
     "placing.py": ("held-section",),
     "models/sectioned.py": ("Aachen2D-suction-pressure",),
-    "models/blunt_edges.py": ("naca-blunt-exact-profile", "naca-blunt-noisy-profile"),
+    "models/model.py": ("naca-blunt-exact-profile", "naca-blunt-noisy-profile"),
     "freeform": ("plain-curve", "plain-surface", "plain-profile"),
     "initial_guess": ("guess-Rotor67", "guess-compressor-stator", "guess-radial-stator"),
     "initial_guess/section.py": (*SECTIONS,),

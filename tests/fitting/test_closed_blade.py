@@ -12,8 +12,7 @@ from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.search import Task
-from bladewright.fitting.models.blunt_edges import sides_of
-from bladewright.fitting.models.model import model_of
+from bladewright.fitting.models.model import model_of, sides_of
 from bladewright.section.laws import Span
 from machines.sectioned import VANE
 

@@ -13,8 +13,7 @@ from bladewright.fitting.families.section_shape import section_shape
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching.scales import scales_of
-from bladewright.fitting.models.blunt_edges import sides_of
-from bladewright.fitting.models.model import model_of
+from bladewright.fitting.models.model import model_of, sides_of
 from bladewright.section.camber_angle import CamberAngle, CamberAngleSection
 from machines.meanlines import BLUNT, on_meanline
 from machines.sections import EXAMPLES

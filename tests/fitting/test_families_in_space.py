@@ -26,8 +26,7 @@ from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footp
 from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.matching.search import Task
 from bladewright.fitting.model_selection.structure import structure_of
-from bladewright.fitting.models.blunt_edges import FACE_SHARE, sides_of
-from bladewright.fitting.models.model import model_of
+from bladewright.fitting.models.model import FACE_SHARE, model_of, sides_of
 from bladewright.section.laws import Span, law_points, named_laws
 from bladewright.section.profiles.naca4 import Naca4
 from bladewright.section.wedge_diffuser import WedgeDiffuser, WedgeDiffuserSection

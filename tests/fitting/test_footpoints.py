@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footpoints
-from bladewright.fitting.models.blunt_edges import sides_of
+from bladewright.fitting.models.model import sides_of
 from bladewright.nurbs.closest import Descents, closest_on_curve, closest_on_surface
 from machines import example
 from machines.sections import EXAMPLES

@@ -22,7 +22,7 @@ from bladewright.fitting.assessment.result import Motion
 from bladewright.fitting.clouds.thinning import MOST_POINTS, even_subset, random_subset, without_isolated_points
 from bladewright.fitting.initial_guess.slices import furthest_apart
 from bladewright.fitting.matching.footpoints import Footpoints, Side, concatenated, footpoints_at, nearest_footpoints
-from bladewright.fitting.models.blunt_edges import sides_of
+from bladewright.fitting.models.model import sides_of
 from bladewright.numerics.elementary import length
 from bladewright.numerics.robust import TUKEY_WIDTH, median_deviation, tukey_weights
 from bladewright.nurbs.basis import Reals

@@ -13,8 +13,7 @@ from bladewright.fitting.free_parameters import EDGES
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS, WallPoints, blade_ends_of
 from bladewright.fitting.matching.footpoints import EDGE_PARAMETERS, Footpoints, nearest_footpoints
 from bladewright.fitting.matching.noise import EDGE_BAND, noise_of
-from bladewright.fitting.models.blunt_edges import blunt_edges_of, on_sides, sides_of
-from bladewright.fitting.models.model import ModelShape
+from bladewright.fitting.models.model import ModelShape, blunt_edges_of, on_sides, sides_of
 from bladewright.numerics.robust import median_deviation
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.closest import Descents

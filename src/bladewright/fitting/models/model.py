@@ -1,34 +1,43 @@
 """What a search sees of a design: its sides, their derivatives by the parameters, and what is refused.
 
-A model refuses nothing that a step of a search may pass on its way, and holds the knots of the native surfaces.
+A model refuses nothing that a step of a search may pass on its way, and holds the knots of the native surfaces. Sides
+have their halves of the faces of blunt edges, which close the outline: a side and half a face are one curve, or
+surface, with a corner, so that a point's nearest place may lie on either.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import singledispatch
 from typing import Any, cast
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.special import comb
 
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.knots import DEGREE, Knots, clamped
 from bladewright.derivatives.complex_step import STEP, step_tangents, steps_of
 from bladewright.designs import Design
 from bladewright.errors import FitError
+from bladewright.fitting.free_parameters import EDGES
 from bladewright.fitting.matching.footpoints import Footpoints, Side
-from bladewright.fitting.models.blunt_edges import BluntEdges, closed_nets
 from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array, cross2
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.collocation import collocation
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.surface import Surface
+from bladewright.section.section import Section
 
 FOLD_GRID = (41, 21)
 """places along and across a channel at which it is checked for folding: those of `build` (design/matching.md)"""
 SMALLEST_JACOBIAN = 0.02
 """smallest Jacobian to which a channel may come, of its median (design/matching_constants.md)"""
+FACE_SHARE = 0.02
+"""share of a side's parameter that half a face takes, which changes no shape (design/matching_constants.md)"""
+BluntEdges = tuple[bool, bool]
+"""whether the leading and the trailing edge are blunt"""
 WITHOUT_WARNINGS = np.errstate(invalid="ignore", divide="ignore", over="ignore")
 """of numpy about what is not finite, which the shape itself tells"""
 
@@ -198,3 +207,77 @@ class SpatialModel(Model):
         rates = moved_along(sides, nets, footpoints, directions)
         weights = [step.weights(footpoints.v) for step in steps]
         return np.stack([rates[:, step] * weights[step][:, place] for step, place in sources], axis=1)
+
+
+def closed_knots(knots: Reals, degree: int, blunt: BluntEdges) -> Reals:
+    """Knots of a side with half a face at its blunt edges, from those of the side over [0, 1]."""
+    low, high = side_bounds(blunt)
+    inner = low + (high - low) * knots[degree + 1 : -degree - 1]
+    corner = [np.full(degree, at) if is_blunt else np.empty(0) for at, is_blunt in zip((low, high), blunt, strict=True)]
+    return np.concatenate([np.zeros(degree + 1), corner[0], inner, corner[1], np.ones(degree + 1)])
+
+
+def closed_nets(upper: Array, lower: Array, degree: int, blunt: BluntEdges) -> tuple[Array, Array]:
+    """Control points (..., n, d) of both sides with half a face at their blunt edges."""
+    steps = (np.arange(1, degree + 1) / degree)[:, None]
+    found = []
+    for side, other in ((upper, lower), (lower, upper)):
+        corners = [(side[..., [at], :], other[..., [at], :]) for at in (0, -1)]
+        first, last = (corner + steps * (0.5 * (corner + across) - corner) for corner, across in corners)
+        parts = [*[first[..., ::-1, :]] * blunt[0], side, *[last] * blunt[1]]
+        found.append(np.concatenate(parts, axis=-2))
+    return found[0], found[1]
+
+
+def side_bounds(blunt: BluntEdges) -> tuple[float, float]:
+    """Parameters at which the side itself begins and ends."""
+    return (FACE_SHARE if blunt[0] else 0.0), (1.0 - FACE_SHARE if blunt[1] else 1.0)
+
+
+def closed_with(upper: Surface, lower: Surface, faces: Mapping[str, Surface]) -> tuple[Surface, Surface]:
+    """Two sides of a blade with the halves of the faces of its blunt edges, given by name."""
+    if not faces:
+        return upper, lower
+    knots = closed_knots(upper.knots_u, upper.degree_u, ("leading_edge" in faces, "trailing_edge" in faces))
+    found = []
+    for side, step in ((upper, 1), (lower, -1)):
+        net = side.control_points
+        for name, face in faces.items():
+            half = _first_half(face.control_points[::step])
+            net = np.concatenate([half[:0:-1], net] if name == "leading_edge" else [net, half[1:]])
+        found.append(replace(side, control_points=net, knots_u=knots))
+    return found[0], found[1]
+
+
+def _first_half(net: Reals) -> Reals:
+    """The first half of a polynomial with control points (n, ...), by de Casteljau's construction."""
+    number = np.arange(len(net))
+    return np.tensordot(comb(number[:, None], number) / 2.0 ** number[:, None], net, axes=1)
+
+
+def sides_of(built: Blade | Section) -> tuple[Curve, Curve] | tuple[Surface, Surface]:
+    """The sides of what is built with the halves of the faces of its blunt edges."""
+    if isinstance(built, Blade):
+        faces = {name: face for name in EDGES if isinstance(face := built.surfaces.get(name), Surface)}
+        return closed_with(*built.sides, faces)
+    upper, lower, blunt = built.curves["upper"], built.curves["lower"], blunt_edges_of(built)
+    if not any(blunt):
+        return upper, lower
+    knots = closed_knots(upper.knots, upper.degree, blunt)
+    nets = closed_nets(upper.control_points, lower.control_points, upper.degree, blunt)
+    first, last = (Curve(control_points=net, knots=knots, degree=upper.degree) for net in nets)
+    return first, last
+
+
+def blunt_edges_of(built: Blade | Section) -> BluntEdges:
+    """Which edges of what is built are blunt."""
+    if isinstance(built, Blade):
+        return "leading_edge" in built.surfaces, "trailing_edge" in built.surfaces
+    return built.edges[0] == "blunt", built.edges[1] == "blunt"
+
+
+def on_sides(footpoints: Footpoints, blunt: BluntEdges) -> tuple[Footpoints, NDArray[np.intp]]:
+    """Footpoints by the sides' own parameters, and -1 for those on the leading face, 1 on the trailing face, 0 else."""
+    low, high = side_bounds(blunt)
+    faces = np.where(footpoints.u < low, -1, np.where(footpoints.u > high, 1, 0))
+    return replace(footpoints, u=np.clip((footpoints.u - low) / (high - low), 0.0, 1.0)), faces

@@ -18,13 +18,16 @@ from bladewright.blade.native.blade import side_surface
 from bladewright.blade.native.interpolation import edge_faces, native_sides
 from bladewright.blade.native.knots import Knots
 from bladewright.blade.native.refinement import mean_chord, refined_knots
-from bladewright.fitting.models.blunt_edges import BluntEdges, closed_knots, closed_nets, closed_with
 from bladewright.fitting.models.model import (
     FOLD_GRID,
     WITHOUT_WARNINGS,
+    BluntEdges,
     ModelShape,
     SectionModel,
     SpatialModel,
+    closed_knots,
+    closed_nets,
+    closed_with,
     fold_margins,
     model_of,
     stepped_rates,
