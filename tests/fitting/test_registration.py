@@ -151,11 +151,6 @@ def test_an_annular_blade_without_a_start_is_refused_with_the_cure(arrangement):
         found_axes(thrown(3)(rows("compressor-stator", 16, 10)), arrangement=arrangement)
 
 
-def test_a_cloud_of_another_dimension_is_refused():
-    with pytest.raises(FitError, match="3 dimensions"):
-        registrations(np.zeros((30, 2)), design_of("vki-ls89"))
-
-
 @pytest.mark.parametrize(
     "axis", ["x", "y", "z", "-x", "-Y", "+z", (0.0, 2.0, 0.0), (1.0, -2.0, 0.5), (-1.0, 1e-3, 0.0)]
 )

@@ -75,9 +75,3 @@ def test_laws_with_fewer_control_points_are_the_nearest():
     # the mean of a parabola over the span
     assert flat.stagger == pytest.approx(np.mean(blade.stagger), rel=1e-2)
     assert flat.metal_angle_in == blade.metal_angle_in
-
-
-def test_another_family_is_refused():
-    for wrong in (reshaped, lambda other, _: structure_of(other)):
-        with pytest.raises(bw.FitError, match="unified"):
-            wrong(object(), structure_of(design("turbine-section")))

@@ -72,22 +72,12 @@ def registrations(points: Reals, design: Design) -> list[tuple[Motion, tuple[str
     """The motions of points (n, d) [m] that lie anywhere onto what a design builds, found without a guess, and notes.
 
     The nearest comes first; others follow that are about as near where the shape is, as of a flat blade turned over.
-    Raises FitError where the points do not have the dimension of the design, or are too few.
     """
     built = design.build()
     sides = sides_of(built)
-    dimension = int(np.real(sides[0].control_points).shape[-1])
-    cloud = np.asarray(points, dtype=np.float64)
-    if cloud.ndim != 2 or cloud.shape[1] != dimension:
-        raise FitError(
-            f"a cloud of shape {cloud.shape} was given for a design in {dimension} dimensions; give (n, {dimension})"
-        )
-    cloud = cloud[np.isfinite(cloud).all(axis=1)]
-    if len(cloud) < 12:
-        raise FitError(f"{len(cloud)} points were given: at least 12 are needed to find where they lie")
-    samples = _samples(sides, dimension)
+    samples = _samples(sides, points.shape[1])
     extent = float(np.max(np.ptp(samples.points, axis=0)))
-    few = without_isolated_points(cloud[random_subset(len(cloud), MOST_POINTS)])
+    few = without_isolated_points(points[random_subset(len(points), MOST_POINTS)])
     few = few[even_subset(few, SEARCH_POINTS)]
 
     def touching(moved: Reals) -> Contact:
@@ -96,7 +86,7 @@ def registrations(points: Reals, design: Design) -> list[tuple[Motion, tuple[str
         rows = np.concatenate([np.arange(len(moved)), past])
         return found.miss, rows, np.concatenate([found.normals, found.beyond[past]])
 
-    some = cloud[random_subset(len(cloud), DECIDING_POINTS)]
+    some = points[random_subset(len(points), DECIDING_POINTS)]
     tree = cKDTree(samples.points)
     starts = _starts(few, samples.points)
     tried = sorted((_rough(few, samples, tree, start, extent) for start in starts), key=lambda each: each[0])

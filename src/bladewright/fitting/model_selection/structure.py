@@ -12,7 +12,7 @@ from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Design, Stations
-from bladewright.errors import DesignError, FitError
+from bladewright.errors import DesignError
 from bladewright.fitting.free_parameters import EDGES, WALLS, sliding_coordinate
 from bladewright.fitting.matching.noise import EXACT
 from bladewright.fitting.model_selection.laws import (
@@ -170,10 +170,6 @@ def _(design: SegmentedSection) -> list[ResizableLaw]:
 
 def sized_laws(design: Any) -> list[ResizableLaw]:
     """The laws and curves of a design whose numbers of control points are its structure."""
-    if not isinstance(design, Design):
-        raise FitError(
-            f"a {type(design).__name__} has no laws that a fit knows: give a design of the unified family, or another"
-        )
     part = getattr(design, "section", design)
     stem, rich = ("", RICH_CHORDWISE) if part is design else ("section.", RICH_SECTION)
     rows = chordwise_rows(part)

@@ -70,14 +70,12 @@ class Model(ABC):
     rounded: bool = False
     """whether all sections end in rounded edges, whose arcs the two sides share"""
 
-    @WITHOUT_WARNINGS
-    def shape(self, design: Design) -> ModelShape:
-        """The sides of a design; raises DesignError where there are none at all."""
-        return self._shape(design)
-
     @abstractmethod
-    def _shape(self, design: Any) -> ModelShape:
-        """The sides of a design; invalid operations leave values that are not finite."""
+    def shape(self, design: Any) -> ModelShape:
+        """The sides of a design; raises DesignError where there are none at all.
+
+        Invalid operations leave values that are not finite.
+        """
 
     @abstractmethod
     def along(self, shape: ModelShape, footpoints: Footpoints, directions: Reals, paths: Sequence[str]) -> Reals:
@@ -155,7 +153,8 @@ class SectionModel(Model):
     def _side(self, net: Reals) -> Curve:
         """The side with these control points."""
 
-    def _shape(self, design: Any) -> ModelShape:
+    @WITHOUT_WARNINGS
+    def shape(self, design: Any) -> ModelShape:
         upper, lower, margins, constraints = map(np.real, self._parts(design))
         sides = self._side(upper), self._side(lower)
         return ModelShape(design=design, sides=sides, edge_radius_margins=margins, constraints=constraints)

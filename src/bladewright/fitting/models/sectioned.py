@@ -110,7 +110,8 @@ class SectionedModel(SpatialModel):
         kinds = exact.survey.edge_kinds
         self.blunt = kinds[0] == "blunt", kinds[1] == "blunt"
 
-    def _shape(self, design: Any) -> ModelShape:
+    @WITHOUT_WARNINGS
+    def shape(self, design: Any) -> ModelShape:
         exact = exact_blade_of_sections(design, self.knots, checked=False)
         stations = exact.sections(self.knots.sites_v)
         sides = [side_surface(net, self.knots, DEGREE) for net in native_sides(stations, self.knots)]

@@ -81,7 +81,8 @@ class UnifiedBladeModel(SpatialModel):
         self.stations = np.union1d(SURVEY, _narrowest_places(design, exact))
         """places along the span at which the thickness must hold the edges' radii"""
 
-    def _shape(self, design: Any) -> ModelShape:
+    @WITHOUT_WARNINGS
+    def shape(self, design: Any) -> ModelShape:
         exact = exact_unified_blade(design, self.knots.tip, tentative=True)
         upper, lower = native_sides(exact.sections(self.knots.sites_v), self.knots)
         return ModelShape(
