@@ -229,12 +229,13 @@ def noise_of(
     outlier where it lies further off than every inlier.
     """
     trusted = np.zeros(len(points), dtype=bool) if trusted is None else trusted
-    rows = np.arange(len(points)) if weights is None else np.flatnonzero(weights > 0.0)
+    weights = np.ones(len(points)) if weights is None else weights
+    rows = np.flatnonzero(weights > 0.0)
     if len(rows) == len(points):
         rows = random_subset(len(points), MOST_POINTS)
     if len(rows) < len(points):
         return _noise_of_some(points, footpoints, weights, rows, trusted)
-    weights = np.ones(len(points)) if weights is None else weights / np.mean(weights)
+    weights = weights / np.mean(weights)
     heights, around = footpoints.heights, neighbourhood_of(points, footpoints)
     inliers = ~_outliers_of(footpoints, weights, around) | trusted
     index = around.index
@@ -275,20 +276,20 @@ def _linear_shares(places: Reals, beside: Reals, normals: Reals) -> Reals:
 
 
 def _noise_of_some(
-    points: Reals, footpoints: Footpoints, weights: Reals | None, rows: NDArray[np.intp], trusted: NDArray[np.bool_]
+    points: Reals, footpoints: Footpoints, weights: Reals, rows: NDArray[np.intp], trusted: NDArray[np.bool_]
 ) -> NoiseEstimate:
     """The noise estimate of the points in `rows`, and which of the others are inliers by it.
 
     Those are level with an inlier beside them, or where they have no weight no further off than every inlier.
     """
     part = footpoints.part(rows)
-    found = noise_of(points[rows], part, None if weights is None else weights[rows], trusted=trusted[rows])
+    found = noise_of(points[rows], part, weights[rows], trusted=trusted[rows])
     kept = part.part(found.inliers)
-    if weights is not None and not np.all(weights > 0.0):
+    if not np.all(weights > 0.0):
         inliers = footpoints.distances <= np.max(kept.distances)
     else:
         beside = cKDTree(kept.points).query(footpoints.points)[1]
-        level = np.hypot(found.noise, found.noise) if weights is None else found.noise * np.sqrt(1.0 + 1.0 / weights)
+        level = found.noise * np.sqrt(1.0 + 1.0 / weights)
         near = EXACT * float(np.max(np.ptp(points, axis=0)))
         inliers = footpoints.distances - kept.distances[beside] <= OUTLYING_NOISE * level + near
     inliers[rows] = found.inliers
