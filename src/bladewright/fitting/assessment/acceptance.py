@@ -9,17 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 from scipy.special import bdtrc
 
-from bladewright.fitting.assessment.coverage import (
-    NORMAL_95,
-    ShapeBands,
-    bare_places,
-    bare_stretches,
-    foreign_edges,
-    least_thickness,
-    loose_ends,
-    shape_bands,
-    uncovered_edges,
-)
+from bladewright.fitting.assessment import coverage
 from bladewright.fitting.assessment.estimates import ParameterEstimates
 from bladewright.fitting.assessment.measurement import Measurement
 from bladewright.fitting.assessment.result import with_unit
@@ -120,7 +110,7 @@ class Acceptance:
         for name, (_, share) in self._uncovered_edges.items():
             if share <= HALF_BLADE_WIDTH:
                 yield f"no point lies around the {name}: where it ends and how round it is are guessed"
-        for name, width in foreign_edges(self.match).items():
+        for name, width in coverage.foreign_edges(self.match).items():
             yield (
                 f"the {name} of the points is cut off, {self._length(width)} wide, and the edges of this family are "
                 "round: it stays within half of that (--family profile has blunt and sharp edges)"
@@ -154,15 +144,15 @@ class Acceptance:
 
     @cached_property
     def _loose_ends(self) -> dict[str, float]:
-        return loose_ends(self.match)
+        return coverage.loose_ends(self.match)
 
     @cached_property
     def _uncovered_edges(self) -> dict[str, tuple[float, float]]:
-        return uncovered_edges(self.match)
+        return coverage.uncovered_edges(self.match)
 
     @cached_property
-    def _bands(self) -> ShapeBands:
-        return shape_bands(self.match)
+    def _bands(self) -> coverage.ShapeBands:
+        return coverage.shape_bands(self.match)
 
     @property
     def _mean(self) -> float:
@@ -258,12 +248,12 @@ class Acceptance:
     def _bare(self) -> dict[str, NDArray[np.bool_]]:
         """Which places (n,) are at an edge or an end past all points there, while it is known elsewhere along it."""
         known = self._bands.half_widths <= GROSS_DEVIATION[1] * self.match.model.chord
-        return bare_places(self.match, self._bands, known)
+        return coverage.bare_places(self.match, self._bands, known)
 
     def _not_shown(self) -> Iterator[str]:
         """Where the shape is known less well than is trusted, and than one point there would show it."""
         bands, chord = self._bands, self.match.model.chord
-        one_point = NORMAL_95 * self.match.noise_estimate.noise
+        one_point = coverage.NORMAL_95 * self.match.noise_estimate.noise
         limits = np.where(np.any(list(self._bare.values()), axis=0), np.inf, np.maximum(self._limits, one_point))
         worst = int(np.argmax(bands.half_widths / limits))
         if bands.half_widths[worst] > limits[worst]:
@@ -300,13 +290,13 @@ class Acceptance:
 
     def _long_gaps(self) -> Iterator[str]:
         """Long gaps between the points around the blade."""
-        for way, place in bare_stretches(self.match):
+        for way, place in coverage.bare_stretches(self.match):
             share = 100 * way / self.match.model.chord
             yield f"no point shows the {place}: {self._length(way, 3)} without one, {share:.2g} % of the chord"
 
     def _partly_shown(self) -> Iterator[str]:
         """Why the points must be those of a part of a blade only, if anything shows it."""
-        feet, thickness = self.match.state.footpoints, least_thickness(self.match)
+        feet, thickness = self.match.state.footpoints, coverage.least_thickness(self.match)
         between = feet.side[self.match.rows & (np.minimum(feet.u, 1.0 - feet.u) > BETWEEN_EDGES)]
         shares = np.bincount(between, minlength=2) / max(len(between), 1)
         one_side = "is it one side of a blade alone? Give points of both"
