@@ -87,7 +87,7 @@ def test_outliers_that_all_lie_inside_the_blade_are_a_shape_that_is_not_found(in
     assert any("inside the blade" in each for each in said) is inside
 
 
-def test_points_of_a_solid_on_its_end_faces_are_said_to_be_there():
+def test_points_of_a_solid_on_its_end_faces_are_set_aside():
     built = builds(STATOR)
     random = np.random.default_rng(4)
     u, v, across = random.random((3, 600))
@@ -99,18 +99,31 @@ def test_points_of_a_solid_on_its_end_faces_are_said_to_be_there():
     at = measured(points, built)
     allow_outliers = ~at.inliers[len(sides) : -1]
     # those beside the outline are as near to the sides, on which an exact cloud has them
-    assert np.mean(at.faced[len(sides) : -1][allow_outliers]) > 0.95
-    assert not np.any(at.faced[: len(sides)])
-    assert not at.faced[-1]
-    assert set(at.regions[at.faced]) == {"ends"}
-    assert set(at.places[at.faced]) == set(STATOR.ends)
+    on_faces = at.set_aside != ""
+    assert np.mean(on_faces[len(sides) : -1][allow_outliers]) > 0.95
+    assert not np.any(on_faces[: len(sides)])
+    assert not on_faces[-1]
+    assert set(at.regions[on_faces]) == {"ends"}
+    assert set(at.places[on_faces]) == set(at.set_aside[on_faces]) == set(STATOR.ends)
     found = matched(points, STATOR)
     said = [
         " ".join(accepted(found, each, MatchTarget(structured=True)).failures())
-        for each in (replace(at, faced=np.zeros(len(points), dtype=bool)), at)
+        for each in (replace(at, set_aside=np.full(len(points), "")), at)
     ]
     assert "lie off the blade" in said[0]
     assert "lie off the blade" not in said[1]
+
+
+@pytest.mark.parametrize(("noise", "failure"), [(0.0, False), (3e-4, True)])
+def test_an_end_that_no_row_of_points_shows_is_a_note_where_the_sides_are_met_everywhere(noise, failure):
+    built, draw = builds(STATOR), np.random.default_rng(8)
+    points = np.concatenate([np.real(side(*draw.random((2, 150)))) for side in built.sides])
+    points += noise * built.chord * draw.normal(size=points.shape)
+    found = matched(points, STATOR, free="channel.leading_edge[*].r")
+    verdict = accepted(found, measured(points, built), MatchTarget())
+    words = "where the blade ends"
+    assert any(words in each for each in verdict.failures()) is failure
+    assert any(words in each for each in verdict.notes())
 
 
 @pytest.mark.parametrize(("share", "sheet"), [(1.0, False), (0.012, True)])

@@ -99,10 +99,7 @@ class Acceptance:
 
     def notes(self) -> Iterator[str]:
         """What else there is to know, each a sentence."""
-        measurement, chord = self.measurement, self.match.model.chord
-        if np.any(measurement.faced):
-            faced, outliers = np.count_nonzero(measurement.faced), np.count_nonzero(measurement.outliers)
-            yield f"{faced} of {outliers} outliers lie on the end faces: the sides are met without them"
+        chord = self.match.model.chord
         if self.target.open and EXACT * chord < self._largest <= NEAR_EVERYWHERE * chord and self._is_systematic:
             yield f"near enough to make, but {self._not_found}"
         if self._in_space and self._mean > GROSS_DEVIATION[0] * chord:
@@ -169,7 +166,7 @@ class Acceptance:
         """Outliers that are too many, too many beside each other, or where chance does not put them."""
         measurement, chord = self.measurement, self.match.model.chord
         distances, count = measurement.distances, len(measurement.distances)
-        outliers = measurement.outliers & ~measurement.faced
+        outliers = measurement.outliers
         off = int(np.count_nonzero(outliers))
         if off > LARGEST_OUTLIER_SHARE * count:
             yield f"{off} of {count} points lie off the blade: is it one blade, and of this family?"
@@ -264,6 +261,9 @@ class Acceptance:
                 f"{100 * limits[worst] / chord:.2g} % of the chord are allowed: is it a whole blade? Give more points "
                 "there, a start, a number of parameters or a tolerance"
             )
+        if self._largest <= NEAR_EVERYWHERE * chord:
+            # ends that no row shows are a note, as the sides are met
+            return
         allowed = max(GROSS_DEVIATION[0] * chord, one_point)
         unknown = {name: gap for name, gap in self._loose_ends.items() if gap > allowed}
         if unknown:

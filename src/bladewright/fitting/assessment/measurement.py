@@ -60,8 +60,6 @@ class Measurement(PlacesOfPoints):
     """Where the n points of a cloud lie on what was built, with the footpoints before cuts and fillets."""
 
     footpoints: Footpoints
-    faced: NDArray[np.bool_]
-    """(n,) whether an outlier lies on an end face, as the points of a solid's faces do"""
 
     @property
     def outliers(self) -> NDArray[np.bool_]:
@@ -81,7 +79,8 @@ def measured(
 
     `precision` (n,) are inverse variances of the points, relative to each other. Where `hidden` (n,) is not
     empty, points off the sides are set aside: on a `wall` or a `fillet` beside the blade, or on the faces of cuts and
-    fillets that the `finished` blade has, where they are nearer to these.
+    fillets that the `finished` blade has, where they are nearer to these. So are points of the end faces, which are
+    outliers to the sides.
     """
     sides = sides_of(built)
     exact = built.exact if isinstance(built, Blade) else None
@@ -114,6 +113,7 @@ def measured(
     if isinstance(built, Blade):
         for (name, end), face in zip(END_PARAMETERS.items(), built.design.ends, strict=True):
             rows = np.flatnonzero(on_end_face & (np.abs(footpoints.v - end) < 0.5))
+            set_aside[rows[~inliers[rows] & (set_aside[rows] == "")]] = face
             outward = _off_wall(name, points[rows], built) * (1.0 if end else -1.0)
             nearer = np.abs(outward) < np.abs(deviations[rows])
             deviations[rows[nearer]] = outward[nearer]
@@ -127,8 +127,6 @@ def measured(
         regions=regions,
         inliers=inliers,
         noise=noise_estimate.noise,
-        # points of end faces, few and far inside the sides, are outliers to these
-        faced=on_end_face & ~inliers & (set_aside == ""),
         set_aside=set_aside,
     )
 
