@@ -184,10 +184,10 @@ def fit(
     """Fit a design to the points of CLOUD, and say how far they lie from it: no first guess is needed.
 
     CLOUD is a table of numbers with or without names above them, an airfoil, a PLY, STL, VTK or NumPy file, or a STEP,
-    IGES or BREP file, whose faces are sampled. Two coordinates give a section, three a blade; x is the machine axis, or
-    give --axis or --align. NAME.fit.json and NAME.fit.png are written beside the design. A design file that is there is
-    only overwritten where it is that of --start, or with --force; it keeps its comments. The exit status is 1 where the
-    fit does not pass; interrupted, it writes the best design so far.
+    IGES or BREP file, whose faces and edges are sampled. Two coordinates give a section, three a blade; x is the
+    machine axis, or give --axis or --align. NAME.fit.json and NAME.fit.png are written beside the design. A design file
+    that is there is only overwritten where it is that of --start, or with --force; it keeps its comments. The exit
+    status is 1 where the fit does not pass; interrupted, it writes the best design so far.
     """
     if no_picture and picture is not None:
         raise click.UsageError("--picture names a picture, and --no-picture wants none: leave one out")

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 CAD_SUFFIXES = (".step", ".stp", ".igs", ".iges", ".brep")
 """Endings of the files whose faces are sampled."""
 SAMPLES = 10_000
-"""Points sampled on the faces of a CAD file where `--samples` is not given. More points take longer to fit and add
+"""Points sampled on faces and edges of a CAD file where `--samples` is not given. More take longer to fit and add
 little, as the faces are exact; fewer leave small edges with too few points."""
 LABELS = ("description", "author", "organisation")
 """Texts that a design file keeps when a fit overwrites it, as no fit knows them."""
