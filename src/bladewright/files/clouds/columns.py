@@ -157,4 +157,4 @@ def unit_warning(points: Reals, unit: str, *, given: bool) -> list[str]:
     taken = f"given as {unit}" if given else f"taken to be in {unit}"
     sure = SMALLEST_EXTENT <= number * UNITS[likely] <= LARGEST_EXTENT and likely != unit
     cure = f": is it in {UNIT_NAMES[likely]}? Then give the unit {likely}" if sure else ": is the unit right?"
-    return [f"the cloud, {taken}, is {extent:.4g} m long, which hardly a blade is{cure}"]
+    return [f"the cloud, {taken}, is {extent:.4g} m long, which is unusual for a blade{cure}"]

@@ -47,7 +47,7 @@ QUICK_POINTS, SEVERAL_POINTS, THOROUGH_POINTS = 1000, 4000, 12_000
 WEAK_REGULARISATION = 0.1
 """factor of the regularisation where a match is only improved (design/matching_constants.md)"""
 CORNERS_HELD_NOTE = "the radii of the channel's corners are read off the points, held, and not counted"
-HELD_NOTE = "the points do not determine {}, which are held where a smooth design has them"
+HELD_NOTE = "held where a smooth design has them, as the points do not determine them: {}"
 DETERMINED_MARGIN, MOST_HOLDINGS = 1.5, 3
 """standard deviations that a determined direction of the parameters has in its own scale at least, and how often
 parameters are held at most (design/matching_constants.md)"""
