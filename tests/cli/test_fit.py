@@ -274,6 +274,36 @@ def test_a_call_that_makes_no_sense_is_refused_and_leaves_nothing(words, message
     assert sorted(tmp_path.iterdir()) == before
 
 
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (
+            ["--deviations", "./vane scan.txt"],
+            "--deviations would be written to 'vane scan.txt', which is the cloud",
+        ),
+        (["--deviations", "vane-scan.toml"], "which is the design as well"),
+        (["--deviations", "vane-scan.fit.json"], "which is the report as well"),
+        (["--deviations", "vane-scan.fit.png"], "which is the picture as well"),
+        (["--start", "start.toml", "--deviations", "start.toml"], "which is the design of --start as well"),
+        (["--like", "start.toml", "-o", "start.toml"], "which is the design of --like"),
+        (["--start", "start.toml", "-o", "start.toml", "--deviations", "start.toml"], "which is the design as well"),
+        (
+            ["--start", "start.toml", "--like", "start.toml", "-o", "start.toml"],
+            "which is the design of --like as well",
+        ),
+        (["--start", "start.toml", "-o", "start.toml", "--picture", "vane.png", "--deviations", "vane.png"], "picture"),
+    ],
+)
+@pytest.mark.usefixtures("stub")
+def test_no_file_is_written_in_the_place_of_another(words, message, run, cloud_file, design, tmp_path):
+    bw.write_design(design, tmp_path / "start.toml")
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    found = run("fit", cloud_file, "--unit", "mm", "--force", *words)
+    assert found.status == 2
+    assert message in found.err
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
 @pytest.mark.usefixtures("stub")
 def test_bad_clouds_are_refused_in_one_paragraph(run, tmp_path):
     for content, message in (("", "is empty"), ("1 2\n3 nan\n", "line 2"), ("1 2\n3 x\n", "'x' at line 2, column 2")):

@@ -21,7 +21,7 @@ from bladewright.cli.fit_files import (
 )
 from bladewright.cli.options import Call, common, force_option, parse_length, parse_name
 from bladewright.cli.outcome import Outcome
-from bladewright.cli.overwriting import refuse_existing
+from bladewright.cli.overwriting import refuse_existing, refuse_same_file
 from bladewright.cli.progress import status_line
 from bladewright.designs import Design
 
@@ -196,10 +196,16 @@ def fit(
     report = report_beside(design)
     picture = None if no_picture else picture or picture_beside(design)
     check_design_file(design)
-    if not (force or _same_file(design, fit_options["start"])):
+    start, like = fit_options["start"], fit_options["like"]
+    onto_start = _same_file(design, start)
+    if not (force or onto_start):
         refuse_existing(design)
     if picture is not None:
         _check_picture(picture, beside=design)
+    refuse_same_file(
+        {"the cloud": cloud, "the design of --start": None if onto_start else start, "the design of --like": like},
+        {"the design": design, "the report": report, "the picture": picture, "the table of --deviations": deviations},
+    )
     with removing_partial_files(design.parent, [design.name, report.name]):
         result, points = _fit(call, cloud, columns, unit, samples, name, fit_options)
         data = _write(result, points, cloud, design, report)

@@ -2,9 +2,11 @@
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
+
+import click
 
 from bladewright.errors import FileError
 from bladewright.origin import Origin
@@ -14,6 +16,17 @@ def refuse_existing(path: Path) -> None:
     """Raise FileError where there is a file already, for a command that was not given `--force`."""
     if path.is_file():
         raise FileError(f"'{path}' exists already: name another file with -o, or overwrite it with --force")
+
+
+def refuse_same_file(read: Mapping[str, Path | None], written: Mapping[str, Path | None]) -> None:
+    """Raise UsageError where a file that is written is also read, or is written twice.
+
+    Files stand under what they are called in a message, and are None where they are not asked for.
+    """
+    known = {path.resolve(): name for name, path in read.items() if path is not None}
+    for name, path in written.items():
+        if path is not None and (other := known.setdefault(path.resolve(), name)) != name:
+            raise click.UsageError(f"{name} would be written to '{path}', which is {other} as well: name another file")
 
 
 def overwritten(files: Sequence[Path], reports: Sequence[Path], design: Path, origin: Origin, *, force: bool) -> str:
