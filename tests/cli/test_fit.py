@@ -75,7 +75,7 @@ def stub(design, monkeypatch, tmp_path):
         given["progress"]("going on")
         if calls.error:
             raise calls.error
-        return fit_of(design.changed("name", name), cloud, **calls.changes)
+        return fit_of(design.changed("name", name or design.name), cloud, **calls.changes)
 
     module = sys.modules.get("bladewright.fitting.fit")
     if module is None:
@@ -146,6 +146,8 @@ def test_patterns_without_values_are_held_at_the_start(run, stub, cloud_file, de
     bw.write_design(design, start)
     assert run("fit", cloud_file, "--start", start, "--fix", "thickness_*", "--no-picture").status == 0
     assert stub.given["fixed"] == ["thickness_*"]
+    # a start keeps its own
+    assert [stub.given[name] for name in ("name", "length_unit")] == [None] * 2
     assert run("fit", cloud_file, "--no-picture", "--force").status == 0
     assert [stub.given[name] for name in ("start", "fixed", "free", "bounds", "tolerance")] == [None] * 5
 

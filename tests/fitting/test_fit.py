@@ -151,6 +151,15 @@ def test_start_fixed_and_bounds_are_kept():
     assert free.design == start.changed("stagger", free.design.stagger)
 
 
+def test_name_unit_and_pitch_are_those_that_are_stated_or_the_start_s_own():
+    points, start = cloud(0, 200), truth(0).changed({"pitch": 57.5, "name": "vane"})
+    stated = {"name": "scan", "length_unit": start.length_unit, "pitch": 0.0575}
+    assert fit(points, start, free="stagger", **stated).design.name == "scan"
+    assert fit(points, start, free="stagger").design.name == "vane"
+    found = fit(points, fixed={"stagger": truth(0).stagger}, like=BASE, length_unit="in", pitch=0.0254).design
+    assert (found.name, found.length_unit, found.pitch) == ("blade", "in", pytest.approx(1.0))
+
+
 def test_bounds_are_kept_though_the_start_matches_beyond_them():
     found = fit(cloud(0, 300), truth(0), bounds={"stagger": (-20.0, 5.0)})
     assert -20.0 <= found.design.stagger <= 5.0
@@ -265,6 +274,20 @@ def test_a_blade_in_a_flow_path_is_found_again_from_a_start_and_its_flow_path_st
         (solid_cloud(), {"family": "unified-section"}, "x and y alone"),
         (solid_cloud(), {"like": INFLOW_IN_PATH}, "like is a unified blade in a flow path.*give it as start"),
         (solid_cloud(), {"start": INFLOW_IN_PATH, "tolerance": 1e-5}, "start is a unified blade in a flow path"),
+        (solid_cloud(), {"start": STATOR, "blade_count": 55}, "blade_count is 55, and the start has"),
+        (solid_cloud(), {"start": STATOR, "arrangement": "linear"}, "arrangement is linear.* in the start's file"),
+        (solid_cloud(), {"start": STATOR, "pitch": 0.02}, "pitch is 0.02, and the start has none"),
+        (solid_cloud(), {"start": STATOR, "length_unit": "in"}, "length_unit is in, and the start has mm"),
+        (solid_cloud(), {"start": STATOR, "blade_count": -1}, "blade_count is -1"),
+        (solid_cloud(), {"start": STATOR, "blade_count": 2.5}, "blade_count is 2.5"),
+        (solid_cloud(), {"start": STATOR, "pitch": -1}, "pitch is -1: a positive length"),
+        (solid_cloud(), {"start": STATOR, "pitch": "3"}, "pitch is '3': a positive length"),
+        (solid_cloud(), {"start": STATOR, "arrangement": "both"}, "arrangement is 'both'"),
+        (solid_cloud(), {"start": STATOR, "length_unit": "yd"}, "length_unit is 'yd'"),
+        (solid_cloud(), {"start": STATOR, "name": "a/b"}, "it names files"),
+        (solid_cloud(), {"arrangement": "linear", "blade_count": 9}, "blade_count is 9, which .* linear does not have"),
+        (cloud(0, 400), {"arrangement": "linear"}, "arrangement is linear, and the points have two coordinates"),
+        (cloud(0, 400), {"blade_count": 30}, "blade_count is 30, and the points have two coordinates"),
         (cloud(0, 400), {"weights": np.ones(3)}, "weights"),
         (cloud(0, 400), {"weights": -np.ones(400)}, "0 or more"),
         (cloud(0, 400), {"fixed": "stagger"}, "give a start"),

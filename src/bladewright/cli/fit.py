@@ -156,8 +156,8 @@ def _parse_axis(_: click.Context, __: click.Parameter, text: str | None) -> str 
 @click.option(
     "--pitch", callback=parse_length, metavar="LENGTH", help="Distance of neighbours in a cascade, such as 57.5mm."
 )
-@click.option("--name", callback=parse_name, help="The design's name; that of the cloud's file where not given.")
-@click.option("--length-unit", type=click.Choice(UNITS), default="mm", show_default=True, help="The design's unit.")
+@click.option("--name", callback=parse_name, help="The design's name; that of --start, or of the cloud's file.")
+@click.option("--length-unit", type=click.Choice(UNITS), help="The design's unit; that of --start, or mm.")
 @click.option("--picture", type=click.Path(path_type=Path), help="Picture to write; NAME.fit.png where not given.")
 @click.option("--no-picture", is_flag=True, help="Draw none.")
 @click.option(
@@ -191,7 +191,9 @@ def fit(
     """
     if no_picture and picture is not None:
         raise click.UsageError("--picture names a picture, and --no-picture wants none: leave one out")
-    name = fit_options.pop("name") or _name_from(cloud)
+    name = fit_options["name"] or _name_from(cloud)
+    if fit_options["start"] is None:
+        fit_options["name"] = name
     design = output or Path(f"{name}.toml")
     report = report_beside(design)
     picture = None if no_picture else picture or picture_beside(design)
@@ -207,7 +209,7 @@ def fit(
         {"the design": design, "the report": report, "the picture": picture, "the table of --deviations": deviations},
     )
     with removing_partial_files(design.parent, [design.name, report.name]):
-        result, points = _fit(call, cloud, columns, unit, samples, name, fit_options)
+        result, points = _fit(call, cloud, columns, unit, samples, fit_options)
         data = _write(result, points, cloud, design, report)
     if deviations is not None:
         write_deviations(result, deviations)
@@ -231,7 +233,6 @@ def _fit(
     columns: tuple[str, ...] | None,
     unit: str | None,
     samples: int | None,
-    name: str,
     fit_options: dict[str, Any],
 ) -> "tuple[Fit, Cloud]":
     """Fit the design; return the result and the cloud as it was read."""
@@ -249,7 +250,7 @@ def _fit(
                 "free": fit_options["free"] or None,
                 "bounds": fit_options["bounds"] or None,
             }
-            return fitted(points.points, name=name, progress=show, **options), points
+            return fitted(points.points, progress=show, **options), points
         except KeyboardInterrupt as error:
             raise click.Abort("before a design was measured, so nothing is written") from error
         except FitError as error:

@@ -21,6 +21,7 @@ from bladewright.fitting.assessment.acceptance import Acceptance, MatchTarget
 from bladewright.fitting.assessment.estimates import parameter_estimates
 from bladewright.fitting.assessment.measurement import PlacesOfPoints, measured
 from bladewright.fitting.assessment.result import Fit, Motion
+from bladewright.fitting.checks import refusing
 from bladewright.fitting.clouds.cloud import checked_cloud, refuse_hidden_blade, refuse_several_blades
 from bladewright.fitting.clouds.thinning import MOST_POINTS, isolated_points
 from bladewright.fitting.clouds.walls import walls_of
@@ -80,8 +81,8 @@ def fit(
     arrangement: Literal["annular", "linear"] | None = None,
     blade_count: int | None = None,
     pitch: float | None = None,
-    name: str = "blade",
-    length_unit: LengthUnit = "mm",
+    name: str | None = None,
+    length_unit: LengthUnit | None = None,
     progress: Progress | None = None,
 ) -> Fit:
     """The design of a family that matches a cloud of points (n, 2) or (n, 3) [m], and how well it does.
@@ -99,8 +100,9 @@ def fit(
 
     `free` are patterns of the parameters that may change, `fixed` of those that are held at the start's values, or
     values by pattern; `bounds` are lowest and highest values by pattern, in the units of the fields. `weights` (n,) of
-    the points, `pitch` in metres. `progress` is handed a few words on what is done. Ctrl-C ends the search with the
-    best design so far, `interrupted`.
+    the points. `start` keeps its own row, `pitch` [m] and `length_unit`, which may not be stated otherwise; without it
+    the unit is mm. Sections have no `arrangement` and `blade_count`. `progress` is handed a few words on what is done.
+    Ctrl-C ends the search with the best design so far, `interrupted`.
 
     Distances are true ones; points that lie off the rest are not weighed (`outliers`). Raises FitError where the cloud
     or the call is wrong, and where no design is found. Reference: Agromayor et al. 2021, section 6.
@@ -115,10 +117,17 @@ def fit(
             "axis and align are both given: axis says where the machine's axis is, align finds it; leave one out"
         )
     precision = None if weights is None else _weights(weights, len(points))
-    finishing, start, like = without_finishing(start, like, name)
+    with refusing():
+        start = start if start is None or name is None else start.changed("name", name)
+    finishing, start, like = without_finishing(start, like, name or "blade")
     header = DesignHeader(
-        name=name, length_unit=length_unit, pitch=pitch, arrangement=arrangement, blade_count=blade_count
+        name=name or "blade",
+        length_unit=getattr(start, "length_unit", "mm") if length_unit is None else length_unit,
+        pitch=pitch,
+        arrangement=arrangement,
+        blade_count=blade_count,
     )
+    header.check_place(points.shape[1], start)
     free_parameters = free_parameters_of(free, fixed, started=start is not None)
     tell: Progress = progress or (lambda _: None)
     if align:
@@ -193,10 +202,8 @@ def named_family(family: str, dimension: int, given: Design | None) -> FitFamily
     Raises FitError where the name is unknown or of the other dimension.
     """
     known = ["unified", "unified-section", *FAMILIES, *(f"{name}-section" for name in FAMILIES)]
-    try:
+    with refusing():
         choice("family", family, known)
-    except DesignError as error:
-        raise FitError(str(error)) from error
     if family.endswith("-section") and dimension == 3:
         raise FitError(f"family is '{family}', and the points have three coordinates: give x and y alone")
     named = FAMILIES.get(family.removesuffix("-section"))

@@ -1,13 +1,16 @@
 """The families that are one part, as fits know them: their designs and where they begin, by name."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from bladewright.blade.design.families import BLADE_OF
-from bladewright.blade.design.row_design import Arrangement, LengthUnit
+from bladewright.blade.design.row_design import BLADES, FIELDS_OF, Arrangement, LengthUnit
 from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.designs import Design
+from bladewright.errors import FitError
+from bladewright.fitting.checks import check_positive, refusing
 from bladewright.fitting.families import segmented
 from bladewright.fitting.families.first_parts import (
     CAMBER_ANGLES,
@@ -19,6 +22,7 @@ from bladewright.fitting.families.first_parts import (
 )
 from bladewright.fitting.families.section_shape import SectionShape
 from bladewright.nurbs.basis import Reals
+from bladewright.section import checks
 from bladewright.section.camber_angle import CamberAngleSection
 from bladewright.section.curvature_meanline import CurvatureMeanlineSection
 from bladewright.section.planar import PlanarSection
@@ -30,7 +34,10 @@ from bladewright.section.wedge_diffuser import WedgeDiffuserSection
 
 @dataclass(frozen=True, kw_only=True)
 class DesignHeader:
-    """Name, unit and the row that a blade stands in; None where nobody has said it."""
+    """Name, unit and the row that a blade stands in; None where nobody has said it.
+
+    Raises FitError where a value is none that a design may have, or an arrangement has no such field.
+    """
 
     name: str
     length_unit: LengthUnit
@@ -38,6 +45,45 @@ class DesignHeader:
     """[m]"""
     arrangement: Arrangement | None = None
     blade_count: int | None = None
+
+    def __post_init__(self) -> None:
+        with refusing():
+            checks.choice("length_unit", self.length_unit, list(checks.UNITS))
+            if self.blade_count is not None:
+                low, high = int(BLADES.low), int(BLADES.high)
+                checks.integer("blade_count", self.blade_count, low, high, "a whole number of blades is needed")
+            if self.arrangement is not None:
+                checks.choice("arrangement", self.arrangement, list(FIELDS_OF))
+        if self.pitch is not None:
+            check_positive("pitch", self.pitch, "a positive length in metres is needed, such as 0.0575")
+        for other, (name, _) in FIELDS_OF.items():
+            if self.arrangement not in (None, other) and getattr(self, name) is not None:
+                raise FitError(
+                    f"{name} is {getattr(self, name)}, which a blade of the arrangement {self.arrangement} does not "
+                    f"have: leave it out, or give the arrangement {other}"
+                )
+
+    def check_place(self, dimension: int, start: Any = None) -> None:
+        """Refuse what points of so many coordinates do not have, or a start, whose own values are kept, otherwise."""
+        for name in ("arrangement", "blade_count"):
+            if dimension == 2 and getattr(self, name) is not None:
+                raise FitError(
+                    f"{name} is {getattr(self, name)}, and the points have two coordinates: a section has a pitch "
+                    f"alone; leave {name} out, or give points in space"
+                )
+        if start is None:
+            return
+        own = {name: getattr(start, name, None) for name in ("arrangement", "blade_count", "length_unit", "pitch")}
+        if own["pitch"] is not None:
+            own["pitch"] *= checks.UNITS[start.length_unit]
+        for name, value in own.items():
+            stated = getattr(self, name)
+            same = math.isclose(stated, value) if name == "pitch" and stated and value else stated == value
+            if stated is not None and not same:
+                raise FitError(
+                    f"{name} is {stated}, and the start has {'none' if value is None else value}, which is kept: leave "
+                    f"{name} out, or change it in the start's file"
+                )
 
     def known(self, like: Any = None) -> dict[str, Any]:
         """Its fields; arrangement, blade count and pitch [m] of a given design where they are not stated."""

@@ -31,7 +31,9 @@ def matched_unified(
         guessed = start if wanted is None else reshaped(start, wanted)
     elif task.dimension == 2:
         points, structure = task.thinned(THOROUGH_POINTS).points, wanted or FIRST_SECTION
-        guessed = first_section(points, structure=structure, name=header.name, length_unit=header.length_unit)
+        guessed = first_section(
+            points, structure=structure, name=header.name, length_unit=header.length_unit, pitch=header.pitch
+        )
     else:
         begun = first_blade(task.thinned(THOROUGH_POINTS).points, **header.known(like))
         guessed, task = begun.design, replace(task.turned(begun.turn), outline=begun.walls)

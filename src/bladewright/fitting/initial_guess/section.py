@@ -28,10 +28,12 @@ def first_section(
     structure: Structure = FIRST_SECTION,
     name: str = "blade",
     length_unit: LengthUnit = "mm",
+    pitch: float | None = None,
 ) -> UnifiedSection:
     """A section of the unified family near points (n, 2) [m], x axial and y tangential, found from them alone.
 
-    Raises FitError where no section that can be built lies near the points.
+    The `pitch` [m], which they do not show, is stated in it. Raises FitError where no section that can be built lies
+    near the points.
     """
     points = without_isolated_points(np.unique(np.asarray(points, dtype=np.float64), axis=0))
     points = points[even_subset(points, DRAWN_POINTS)]
@@ -51,6 +53,7 @@ def first_section(
             guess = UnifiedSection(
                 name=name,
                 length_unit=length_unit,
+                pitch=None if pitch is None else pitch / metre,
                 leading_edge_x=float(first[0]) / metre,
                 leading_edge_y=float(first[1]) / metre,
                 axial_chord=extent * size / metre,
