@@ -25,7 +25,7 @@ def test_a_whole_blade_is_taken_as_it_is(cloud: np.ndarray) -> None:
 @pytest.mark.parametrize(
     ("cloud", "said"),
     [
-        ([["a", "b"]] * 200, "not an array of numbers"),
+        ([["a", "b"]] * 200, "are not numbers"),
         (np.zeros((200, 4)), "the shape"),
         (HOLED, "the first of them point 7"),
         (SECTION[:23], "23 different points"),

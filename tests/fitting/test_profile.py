@@ -131,6 +131,8 @@ def test_a_tolerance_that_is_kept_adds_nothing():
         (np.ones((40, 3)), {}, "d = 2"),
         (np.linspace(0, 1, 60)[:, None] * np.ones(2), {}, "line"),
         (CAMBER, {}, "unknowns"),
+        (CAMBER + 1e-3j, {}, "an imaginary part is not zero"),
+        (contour(profile(round_end=True))[0], {"camber": 4.5}, "camber is 4.5: a whole number"),
         (contour(profile(round_end=True))[0], {"thickness": 4}, "at least 4 and 5"),
         (contour(profile(round_end=True))[0], {"trailing_edge": "sharp"}, "'sharp'"),
         (contour(profile(round_end=True))[0], {"ends": "loose"}, "'loose'"),

@@ -168,7 +168,18 @@ def test_a_named_axis_becomes_x_by_the_smallest_turn(axis):
         assert turn[2] == pytest.approx([0.0, 0.0, 1.0])
 
 
-@pytest.mark.parametrize("axis", ["w", "", "xy", (0.0, 0.0, 0.0), (1.0, 2.0), (np.inf, 0.0, 0.0)])
+def test_only_the_direction_of_an_axis_counts():
+    for size in (1e300, 1e-300):
+        assert axis_motion((0.0, size, 0.0), 3).rotation == pytest.approx(axis_motion("y", 3).rotation)
+
+
+@pytest.mark.parametrize("axis", [("a", "b", "c"), (1j, 0.0, 0.0)])
+def test_an_axis_of_no_numbers_is_refused(axis):
+    with pytest.raises(FitError, match="the numbers of axis are"):
+        axis_motion(axis, 3)
+
+
+@pytest.mark.parametrize("axis", [3, "w", "", "xy", (0.0, 0.0, 0.0), (1.0, 2.0), (np.inf, 0.0, 0.0)])
 def test_what_is_no_axis_is_refused(axis):
     with pytest.raises(FitError, match="direction of the machine's axis"):
         axis_motion(axis, 3)

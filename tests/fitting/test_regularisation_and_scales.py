@@ -17,7 +17,7 @@ from bladewright.fitting.matching.residuals import (
     USUAL_TANGENT,
     regularisation_of,
 )
-from bladewright.fitting.matching.scales import check_bounds, part_range, scales_of
+from bladewright.fitting.matching.scales import check_bounds, given_bounds, part_range, scales_of
 from bladewright.section.checks import UNITS
 from machines import example
 
@@ -129,7 +129,6 @@ def test_bounds_of_what_a_structure_lacks_are_passed_over():
 @pytest.mark.parametrize(
     ("bounds", "words"),
     [
-        ({"stagger": (3.0, 1.0)}, "the first must be below the second"),
         ({"staggr": (1.0, 3.0)}, "'staggr'"),
         ({"stagger": (100.0, 120.0)}, "the family allows -89 to 89"),
     ],
@@ -138,6 +137,28 @@ def test_bounds_that_make_no_sense_are_refused(bounds, words):
     with pytest.raises(bw.FitError, match=words) as caught:
         check_bounds(SECTION, PATHS, bounds)
     assert "\n" not in str(caught.value)
+
+
+def test_an_open_end_is_none_or_infinite():
+    given = {"stagger": (None, -30), "tangent_in": (0.1, np.inf)}
+    assert given_bounds(given) == {"stagger": (-np.inf, -30.0), "tangent_in": (0.1, np.inf)}
+
+
+@pytest.mark.parametrize(
+    ("bounds", "words"),
+    [
+        ([("stagger", (1.0, 3.0))], "a mapping from patterns to pairs"),
+        ({3: (1.0, 3.0)}, "bounds holds 3"),
+        ({"stagger": (1, 2, 3)}, r"the bounds of stagger are \(1, 2, 3\): the lowest and the highest"),
+        ({"stagger": 3.0}, "the lowest and the highest"),
+        ({"stagger": ("1", "2")}, "the lowest and the highest"),
+        ({"stagger": (3.0, 1.0)}, "the first must be below the second"),
+        ({"stagger": (np.nan, 1.0)}, "the first must be below the second"),
+    ],
+)
+def test_bounds_of_no_shape_are_refused(bounds, words):
+    with pytest.raises(bw.FitError, match=words):
+        given_bounds(bounds)
 
 
 @pytest.mark.parametrize(

@@ -1,11 +1,14 @@
 """Checks of the arguments of fits; each refusal names the argument, its value and what is needed."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from numbers import Real
+from numbers import Integral, Real
 from typing import Any
 
+import numpy as np
+
 from bladewright.errors import DesignError, FitError
+from bladewright.nurbs.basis import Reals
 
 
 @contextmanager
@@ -26,3 +29,43 @@ def check_positive(name: str, value: Any, needed: str) -> None:
     """Refuse anything but a finite number above zero."""
     if not is_number(value) or not 0.0 < value < float("inf"):
         raise FitError(f"{name} is {value!r}: {needed}")
+
+
+def check_whole(**counts: Any) -> None:
+    """Refuse anything but whole numbers."""
+    for name, value in counts.items():
+        if not is_number(value) or not isinstance(value, Integral):
+            raise FitError(f"{name} is {value!r}: a whole number is needed")
+
+
+def check_kind(start: Any, kind: type) -> None:
+    """Refuse a start of another kind."""
+    if start is not None and not isinstance(start, kind):
+        raise FitError(f"start is {start!r}: a {kind.__name__} is needed, or none")
+
+
+def check_progress(progress: Any) -> None:
+    """Refuse what cannot be told how far a fit is."""
+    if progress is not None and not callable(progress):
+        raise FitError(f"progress is {progress!r}: a function of one text is needed, such as print")
+
+
+def reals(what: str, given: Any, cure: str) -> Reals:
+    """An array of what was given, which may be complex where no imaginary part is left."""
+    try:
+        found = np.asarray(given)
+        real = np.asarray(found.real if np.iscomplexobj(found) else found, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise FitError(f"{what} are not numbers ({error}): {cure}") from error
+    if np.iscomplexobj(found) and np.any(found.imag):
+        raise FitError(f"{what} are complex, and an imaginary part is not zero: {cure}")
+    return real
+
+
+def texts(name: str, given: Any) -> tuple[str, ...]:
+    """The patterns of one argument, of one text or several."""
+    found = (given,) if isinstance(given, str) else tuple(given) if isinstance(given, Iterable) else (given,)
+    wrong = [each for each in found if not isinstance(each, str)]
+    if wrong:
+        raise FitError(f"{name} holds {wrong[0]!r}: patterns of parameters are needed, such as 'stagger[*]'")
+    return found

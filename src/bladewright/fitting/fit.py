@@ -21,8 +21,8 @@ from bladewright.fitting.assessment.acceptance import Acceptance, MatchTarget
 from bladewright.fitting.assessment.estimates import parameter_estimates
 from bladewright.fitting.assessment.measurement import PlacesOfPoints, measured
 from bladewright.fitting.assessment.result import Fit, Motion
-from bladewright.fitting.checks import refusing
-from bladewright.fitting.clouds.cloud import checked_cloud, refuse_hidden_blade, refuse_several_blades
+from bladewright.fitting.checks import check_positive, check_progress, reals, refusing
+from bladewright.fitting.clouds.cloud import checked_cloud, different_points, refuse_hidden_blade, refuse_several_blades
 from bladewright.fitting.clouds.thinning import MOST_POINTS, isolated_points
 from bladewright.fitting.clouds.walls import walls_of
 from bladewright.fitting.families.blades import matched_blade
@@ -32,6 +32,7 @@ from bladewright.fitting.families.unified import matched_unified
 from bladewright.fitting.free_parameters import FreeParameters, free_parameters_of
 from bladewright.fitting.initial_guess.blade import UPRIGHT, spans_along_y
 from bladewright.fitting.matching.noise import EXACT
+from bladewright.fitting.matching.scales import given_bounds
 from bladewright.fitting.matching.search import Match, Progress, Task
 from bladewright.fitting.placing import (
     UPRIGHT_NOTE,
@@ -74,7 +75,7 @@ def fit(
     parameters: int | None = None,
     free: Patterns = None,
     fixed: Patterns | Mapping[str, float] = None,
-    bounds: Mapping[str, tuple[float, float]] | None = None,
+    bounds: Mapping[str, tuple[float | None, float | None]] | None = None,
     weights: ArrayLike | None = None,
     align: bool = False,
     axis: str | Sequence[float] | None = None,
@@ -99,10 +100,10 @@ def fit(
     ones.
 
     `free` are patterns of the parameters that may change, `fixed` of those that are held at the start's values, or
-    values by pattern; `bounds` are lowest and highest values by pattern, in the units of the fields. `weights` (n,) of
-    the points. `start` keeps its own row, `pitch` [m] and `length_unit`, which may not be stated otherwise; without it
-    the unit is mm. Sections have no `arrangement` and `blade_count`. `progress` is handed a few words on what is done.
-    Ctrl-C ends the search with the best design so far, `interrupted`.
+    values by pattern; `bounds` are lowest and highest values by pattern, in the units of the fields, or None.
+    `weights` (n,) of the points. `start` keeps its own row, `pitch` [m] and `length_unit`, which may not be stated
+    otherwise; without it the unit is mm. Sections have no `arrangement` and `blade_count`. `progress` is handed a few
+    words on what is done. Ctrl-C ends the search with the best design so far, `interrupted`.
 
     Distances are true ones; points that lie off the rest are not weighed (`outliers`). Raises FitError where the cloud
     or the call is wrong, and where no design is found. Reference: Agromayor et al. 2021, section 6.
@@ -112,11 +113,8 @@ def fit(
     given = start is not None or like is not None
     target = MatchTarget(tolerance=tolerance, parameters=parameters, structured=parameters is None and given)
     _check_call(points, kind, start, like, target)
-    if axis is not None and align:
-        raise FitError(
-            "axis and align are both given: axis says where the machine's axis is, align finds it; leave one out"
-        )
-    precision = None if weights is None else _weights(weights, len(points))
+    check_progress(progress)
+    precision = None if weights is None else _weights(weights, points)
     with refusing():
         start = start if start is None or name is None else start.changed("name", name)
     finishing, start, like = without_finishing(start, like, name or "blade")
@@ -128,6 +126,7 @@ def fit(
         blade_count=blade_count,
     )
     header.check_place(points.shape[1], start)
+    limits = given_bounds(bounds)
     free_parameters = free_parameters_of(free, fixed, started=start is not None)
     tell: Progress = progress or (lambda _: None)
     if align:
@@ -141,7 +140,7 @@ def fit(
             points=points if motion is None else motion(points),
             weights=np.ones(len(points)) if precision is None else precision,
             free=free_parameters,
-            bounds=dict(bounds or {}),
+            bounds=limits,
             progress=tell,
             precision=precision,
         )
@@ -186,6 +185,10 @@ def _ways_of(
     given: bool,
 ) -> Ways:
     """The motions into the machine's axes, and notes; without a `given` design they turn a cascade's span to z."""
+    if axis is not None and align:
+        raise FitError(
+            "axis and align are both given: axis says where the machine's axis is, align finds it; leave one out"
+        )
     if align:
         return [found_axes(points, arrangement=header.arrangement)] if start is None else registrations(points, start)
     motion = None if axis is None else axis_motion(axis, points.shape[1])
@@ -239,8 +242,8 @@ def _check_call(
             "start is a unified blade in a flow path, whose numbers of control points are kept: leave tolerance and "
             "parameters out, or give a start with channel.hub and channel.shroud"
         )
-    if tolerance is not None and not 0.0 < tolerance < np.inf:
-        raise FitError(f"tolerance is {tolerance!r}: a positive length in metres is needed, such as 5e-5")
+    if tolerance is not None:
+        check_positive("tolerance", tolerance, "a positive length in metres is needed, such as 5e-5")
     if tolerance is not None and count is not None:
         raise FitError("tolerance and parameters are both given: the one decides the other; leave one out")
     if count is not None and not (np.issubdtype(type(count), np.integer) and least <= count <= 2000):
@@ -273,13 +276,13 @@ def _matched(
         return task.best_so_far.instead_of(found, error, structured=target.structured)
 
 
-def _weights(weights: ArrayLike, count: int) -> Reals:
+def _weights(weights: ArrayLike, points: Reals) -> Reals:
     """The given weights, of a mean of one."""
-    found = np.asarray(weights, dtype=np.float64)
-    if found.shape != (count,) or not np.all(np.isfinite(found)) or np.any(found < 0.0) or not np.any(found > 0.0):
-        raise FitError(
-            f"weights have shape {found.shape}: one number of 0 or more is needed for each of the {count} points"
-        )
+    needed, count = f"one number of 0 or more is needed for each of the {len(points)} points", len(points)
+    found = reals("weights", weights, needed)
+    if found.shape != (count,) or not np.all(np.isfinite(found)) or np.any(found < 0.0):
+        raise FitError(f"weights have shape {found.shape}: {needed}")
+    different_points(points[found > 0.0], " of a weight above 0")
     return found * (count / np.sum(found))
 
 

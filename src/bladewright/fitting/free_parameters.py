@@ -11,6 +11,7 @@ from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.derivatives.patterns import Patterns, chosen, matching
 from bladewright.designs import Design, value_at
 from bladewright.errors import DesignError, FitError
+from bladewright.fitting.checks import texts
 from bladewright.numerics.elementary import Array
 from bladewright.section.laws import law_points
 from bladewright.section.profiles.points import PointsProfile
@@ -143,9 +144,10 @@ class FreeParameters:
 
 def free_parameters_of(free: Patterns, fixed: "Patterns | Mapping[str, float]", *, started: bool) -> FreeParameters:
     """The free parameters that were asked for; raises FitError where what is held has no value."""
+    free = None if free is None else texts("free", free)
+    names = () if fixed is None else texts("fixed", fixed)
     if isinstance(fixed, Mapping):
-        return FreeParameters(free=free, fixed=tuple(fixed), values=dict(fixed))
-    names = () if fixed is None else (fixed,) if isinstance(fixed, str) else tuple(fixed)
+        return FreeParameters(free=free, fixed=names, values=dict(fixed))
     if (names or free is not None) and not started:
         held = names[0] if names else "what is not free"
         raise FitError(f"{held} is to be held, but has no value: give a start design, or the value itself")

@@ -19,6 +19,7 @@ from bladewright.blade.design.row_design import Arrangement
 from bladewright.designs import Design
 from bladewright.errors import FitError
 from bladewright.fitting.assessment.result import Motion
+from bladewright.fitting.checks import reals
 from bladewright.fitting.clouds.thinning import MOST_POINTS, even_subset, random_subset, without_isolated_points
 from bladewright.fitting.initial_guess.slices import furthest_apart
 from bladewright.fitting.matching.footpoints import Footpoints, Side, concatenated, footpoints_at, nearest_footpoints
@@ -259,14 +260,15 @@ def axis_motion(axis: str | Sequence[float], dimension: int) -> Motion:
         word = axis.strip().lower()
         direction = units.get(word.lstrip("+-"), np.zeros(dimension)) * (-1.0 if word.startswith("-") else 1.0)
     else:
-        direction = np.array([float(each) for each in axis])
-    size = float(np.sqrt(np.sum(direction**2)))
-    if direction.shape != (dimension,) or not 0.0 < size < np.inf:
+        direction = reals("the numbers of axis", axis, f"give {dimension} that are not all zero")
+    largest = np.max(np.abs(direction), initial=0.0)
+    if direction.shape != (dimension,) or not 0.0 < largest < np.inf:
         raise FitError(
             f"axis is {axis!r}: the direction of the machine's axis in the points' coordinates is needed, one of "
             f"{', '.join(names)}, also with a minus before it, or {dimension} numbers that are not all zero"
         )
-    direction /= size
+    direction = direction / largest
+    direction /= np.sqrt(np.sum(direction**2))
     middle = direction + units["x"]
     if middle @ middle < np.finfo(float).eps:
         return Motion(rotation=np.diag([-1.0, -1.0, 1.0][:dimension]), translation=np.zeros(dimension))

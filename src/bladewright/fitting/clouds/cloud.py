@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 
 from bladewright.domain.row import turn_matrix
 from bladewright.errors import FitError
+from bladewright.fitting.checks import reals
 from bladewright.fitting.clouds.thinning import MOST_POINTS, even_subset, groups, random_subset
 from bladewright.nurbs.basis import Reals
 
@@ -43,10 +44,7 @@ def checked_cloud(cloud: ArrayLike) -> Reals:
     Raises FitError for anything but finite numbers in two or three columns, fewer than 24 different points (100 in
     space), points on one line or one plane, and one side of a blade only.
     """
-    try:
-        points = np.asarray(cloud, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise FitError(f"the cloud is not an array of numbers ({error}): give (n, 2) or (n, 3) in metres") from error
+    points = reals("the points of the cloud", cloud, "give (n, 2) or (n, 3) in metres")
     if points.ndim != 2 or points.shape[1] not in (2, 3):
         raise FitError(
             f"the cloud has the shape {points.shape}: give (n, 2) with x and y, or (n, 3) with x, y and z, in metres"
@@ -57,13 +55,7 @@ def checked_cloud(cloud: ArrayLike) -> Reals:
             f"{np.count_nonzero(bad)} of {len(points)} points are not finite numbers, the first of them point "
             f"{int(np.argmax(bad))}: leave them out"
         )
-    different = np.unique(points[random_subset(len(points), MOST_POINTS)], axis=0)
-    dimension = points.shape[1]
-    if len(different) < FEWEST_POINTS[dimension]:
-        raise FitError(
-            f"the cloud has {len(different)} different points: at least {FEWEST_POINTS[dimension]} are needed; "
-            "give more points of the blade's surface"
-        )
+    different, dimension = different_points(points), points.shape[1]
     spread = np.linalg.svd(different - np.mean(different, axis=0), compute_uv=False)
     if spread[1] < FLATTEST * spread[0]:
         raise FitError(
@@ -79,6 +71,20 @@ def checked_cloud(cloud: ArrayLike) -> Reals:
             "the cloud holds one side of a blade alone, a sheet without thickness: give the points of both sides"
         )
     return points
+
+
+def different_points(points: Reals, kind: str = "") -> Reals:
+    """The different ones of points (n, 2) or (n, 3), thinned; raises FitError where these of a `kind` are too few."""
+    different, fewest = (
+        np.unique(points[random_subset(len(points), MOST_POINTS)], axis=0),
+        FEWEST_POINTS[points.shape[1]],
+    )
+    if len(different) < fewest:
+        raise FitError(
+            f"the cloud has {len(different)} different points{kind}: at least {fewest} are needed; give more points of "
+            "the blade's surface"
+        )
+    return different
 
 
 def refuse_several_blades(points: Reals) -> None:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sized
 from dataclasses import dataclass, replace
-from typing import Literal, final
+from typing import Any, Literal, final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +13,7 @@ from scipy.spatial import ConvexHull, cKDTree
 from scipy.spatial.distance import cdist
 
 from bladewright.errors import FitError, GeometryError
+from bladewright.fitting.checks import check_kind, check_whole
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.freeform.fits import FreeformFit, Request
 from bladewright.fitting.freeform.net import DIRECTIONS, first_net, matched_within, net_of
@@ -81,6 +82,10 @@ def fit_curve(
     request = Request(
         "a curve", points, weights=weights, power=power, robust=robust, tolerance=tolerance, progress=progress
     )
+    check_whole(degree=degree, control_points=control_points)
+    check_kind(start, Curve)
+    if closed and not (isinstance(ends, str) and ends == "fixed"):
+        raise FitError("closed and ends are both given: a closed curve has no ends; leave one out")
     pair, scaled = request.ends(ends), request.scaled(request.points)
     if start is None:
         shares = sites_along(scaled, closed=closed)
@@ -194,10 +199,14 @@ def fit_surface(
         raise FitError(f"boundary {boundary!r} is unknown: `free`, `corners`, or `fixed` at that of `start`")
     if boundary == "fixed" and start is None:
         raise FitError("a fixed boundary was asked for without `start`: give the surface whose boundary is to stay")
-    if {len(degrees), len(control_points), 2 if knots is None else len(knots)} != {2}:
+    check_kind(start, Surface)
+    pairs: tuple[Any, ...] = degrees, control_points, (0, 0) if knots is None else knots
+    if not all(isinstance(each, Sized) and len(each) == 2 for each in pairs):
         raise FitError(
             "a surface has two degrees, two numbers of control points, and two arrays of knots: one for u and v"
         )
+    for degree, count in zip(degrees, control_points, strict=True):
+        check_whole(degree=degree, control_points=count)
     scaled = request.scaled(request.points)
     if start is None:
         shares = _rectangle(scaled)

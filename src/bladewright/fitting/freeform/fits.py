@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bladewright.errors import FitError
+from bladewright.fitting.checks import check_positive, check_progress, is_number, reals
 from bladewright.nurbs.basis import Reals
 
 
@@ -116,17 +117,19 @@ class Request:
             raise FitError(f"{len(given)} points at one place were given for {what}: it needs different ones")
         if isinstance(self.weights, str) and self.weights not in ("fixed", "free"):
             raise FitError(f"weights {self.weights!r} are unknown: `fixed` (all one), `free`, or positive numbers")
-        if not 2.0 <= self.power <= 16.0:
+        if not is_number(self.power) or not 2.0 <= self.power <= 16.0:
             raise FitError(
-                f"power {self.power} was asked for: 2 is least squares, higher ones up to 16 weigh large distances more"
+                f"power {self.power!r} was asked for: 2 is least squares, higher ones up to 16 weigh large distances "
+                "more"
             )
-        if self.tolerance is not None and not self.tolerance > 0.0:
-            raise FitError(f"a tolerance of {self.tolerance} was asked for: it must be positive")
+        if self.tolerance is not None:
+            check_positive("tolerance", self.tolerance, "a positive length in the unit of the points is needed")
+        check_progress(self.progress)
 
     @cached_property
     def points(self) -> Reals:
         """(n, d) as numbers."""
-        return _numbers(self.given, f"the points of {self.what}")
+        return reals(f"the points of {self.what}", self.given, "give an array of coordinates")
 
     @property
     def weights_free(self) -> bool:
@@ -162,15 +165,7 @@ class Request:
             if ends in ("fixed", "free"):
                 return None
             raise FitError(f"ends {ends!r} are unknown: `fixed`, `free`, or the first and the last point")
-        pair, count = _numbers(ends, "the ends"), self.points.shape[1]
+        pair, count = reals("the ends", ends, "give the first and the last point"), self.points.shape[1]
         if pair.shape != (2, count) or not np.isfinite(pair).all():
             raise FitError(f"ends of shape {pair.shape} were given: two finite points of {count} coordinates")
         return self.scaled(pair)
-
-
-def _numbers(given: Any, what: str) -> Reals:
-    """An array of what was given; FitError where these are not numbers."""
-    try:
-        return np.array(given, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise FitError(f"{what} are not numbers ({error}); give an array of coordinates") from error

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import null_space
 
 from bladewright.errors import FitError, GeometryError
+from bladewright.fitting.checks import reals
 from bladewright.fitting.freeform.fits import Request
 from bladewright.fitting.freeform.search import STIFFNESSES, Shape, ShapeMatch, matched_by_stages, placed
 from bladewright.numerics.quadrature import panels
@@ -237,24 +238,27 @@ def first_net(
     Its knots are uniform or given. Raises FitError where degrees, numbers of control points and knots make no curve or
     surface, and where weights are not positive or not as many as control points.
     """
+    given_knots = [
+        np.atleast_1d(reals("knots", own, "give an increasing list")) for own in (() if knots is None else knots)
+    ]
     if knots is not None:
         ends = (1,) if closed else tuple(degree + 1 for degree in degrees)
-        counts = tuple(len(np.atleast_1d(own)) - end for own, end in zip(knots, ends, strict=True))
+        counts = tuple(len(own) - end for own, end in zip(given_knots, ends, strict=True))
     try:
         own = [uniform_knots(count, degree) for count, degree in zip(counts, degrees, strict=True)]
-        every = own if knots is None or closed else knots
+        every = own if knots is None or closed else given_knots
         own = [checked_knots(*each, "knots") for each in zip(every, degrees, counts, strict=True)]
     except GeometryError as error:
         what = "curve" if len(degrees) == 1 else "surface"
         raise FitError(f"a {what} of degree {degrees} with {counts} control points: {error}") from error
     if closed:
-        period = np.linspace(0.0, 1.0, counts[0] + 1) if knots is None else np.array(knots[0], dtype=np.float64)
+        period = np.linspace(0.0, 1.0, counts[0] + 1) if knots is None else given_knots[0]
         if not (np.diff(period) > 0.0).all():
             raise FitError(f"the knots {period.tolist()} of a closed curve must be distinct and increasing; sort them")
         own = [np.pad(period, degrees[0], "edge")]
     logs = np.zeros(counts)
     if not isinstance(weights, str):
-        given = np.array(weights, dtype=np.float64)
+        given = reals("weights", weights, "give a positive one for each control point")
         if given.shape != counts or not (given > 0.0).all():
             raise FitError(f"weights of shape {given.shape} were given: positive ones of shape {counts} are needed")
         logs = np.log(given)

@@ -14,6 +14,7 @@ from scipy.spatial import QhullError, cKDTree
 
 from bladewright.derivatives.complex_step import STEP
 from bladewright.errors import FitError
+from bladewright.fitting.checks import check_whole
 from bladewright.fitting.freeform.fits import FreeformFit, Request
 from bladewright.fitting.freeform.net import LAST_STEP, Net, net_of
 from bladewright.fitting.freeform.search import Shape, matched_by_stages, placed
@@ -185,6 +186,7 @@ def fit_profile(
     off along the camber's normals.
     """
     request = Request("a profile", points, 2, power=power, tolerance=tolerance, progress=progress)
+    check_whole(camber=camber, thickness=thickness)
     pair, scaled = request.ends(ends), request.scaled(request.points)
     if trailing_edge not in ("blunt", "round"):
         raise FitError(f"trailing edge {trailing_edge!r} is unknown: `blunt` or `round`")

@@ -1,10 +1,10 @@
 """What change of a parameter matters, and how far a parameter may go."""
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from bladewright.derivatives.patterns import matching
 from bladewright.designs import Design, Part, limits_at, unit_at
 from bladewright.errors import DesignError, FitError
+from bladewright.fitting.checks import is_number, texts
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 
@@ -47,6 +48,9 @@ ON_BOUND = 1e-9
 INSIDE = 1e-3
 """how far inside its field's limits a parameter stays, of its size, as derivatives are taken at bounds
 (design/matching_constants.md)"""
+
+OPEN = -np.inf, np.inf
+"""bounds that hold nothing"""
 
 RangeRule = Callable[[float, float], ParameterRange]
 """from a parameter's value and the largest magnitude in its field"""
@@ -111,11 +115,31 @@ def scales_of(
     return Scales(size=size, low=low, high=high)
 
 
-def check_bounds(design: Design, paths: Sequence[str], bounds: Mapping[str, tuple[float, float]]) -> None:
-    """Refuse bounds of no free parameter (k,), in the wrong order, or outside what the family allows."""
-    for pattern, (least, most) in bounds.items():
+def given_bounds(given: Any) -> dict[str, tuple[float, float]]:
+    """The bounds that were asked for, infinite where one is None; refuse those of no shape, or in the wrong order."""
+    given = {} if given is None else given
+    if not isinstance(given, Mapping):
+        raise FitError(
+            f"bounds are {given!r}: a mapping from patterns to pairs is needed, such as {{'stagger': (5, 9)}}"
+        )
+    bounds = dict[str, tuple[float, float]]()
+    for pattern, pair in zip(texts("bounds", given), given.values(), strict=True):
+        ends = tuple(pair) if isinstance(pair, Iterable) else ()
+        if len(ends) != 2 or not all(each is None or is_number(each) for each in ends):
+            raise FitError(
+                f"the bounds of {pattern} are {pair!r}: the lowest and the highest value are needed, such as (5, 9), "
+                "or None for one that is open"
+            )
+        least, most = (open_end if each is None else float(each) for each, open_end in zip(ends, OPEN, strict=True))
         if not least < most:
             raise FitError(f"the bounds of {pattern} are {least:g} to {most:g}: the first must be below the second")
+        bounds[pattern] = least, most
+    return bounds
+
+
+def check_bounds(design: Design, paths: Sequence[str], bounds: Mapping[str, tuple[float, float]]) -> None:
+    """Refuse bounds of no free parameter (k,), or outside what the family allows."""
+    for pattern, (least, most) in bounds.items():
         try:
             matched = matching(pattern, paths)
         except DesignError as error:
