@@ -7,6 +7,7 @@ from bladewright.fitting.free_parameters import free_parameters_of
 from machines import example
 
 DESIGN = example("turbine-section")
+CLEARANCE = {"tip_clearance": None, "hub_clearance": 0.5}
 
 
 def test_all_is_free_but_what_a_cloud_of_one_blade_says_nothing_of():
@@ -19,7 +20,21 @@ def test_patterns_choose_what_is_free_and_what_is_held():
     assert free_parameters_of("thickness_upper[*]", "*[0]", started=True)(DESIGN) == tuple(
         f"thickness_upper[{i}]" for i in range(1, len(DESIGN.thickness_upper))
     )
-    assert free_parameters_of(["stagger", "pitch"], None, started=True)(DESIGN) == ("pitch", "stagger")
+    assert free_parameters_of(["stagger", "*chord"], None, started=True)(DESIGN) == ("axial_chord", "stagger")
+
+
+def test_a_pattern_of_others_too_frees_nothing_that_no_point_shows():
+    found = free_parameters_of("*", None, started=True)(DESIGN)
+    assert "stagger" in found
+    assert "pitch" not in found
+
+
+@pytest.mark.parametrize("free", ["pitch", ["stagger", "pitch"], "pitc*"])
+def test_what_no_point_shows_is_not_freed_by_its_name(free):
+    with pytest.raises(bw.FitError, match=r"free names pitc.*, which the points of one blade do not show"):
+        free_parameters_of(free, None, started=True)(DESIGN)
+    with pytest.raises(bw.FitError, match="free names hub_clearance"):
+        free_parameters_of("hub_clearance", None, started=True)(example("fan-rotor").changed(CLEARANCE))
 
 
 def test_values_are_given_to_what_is_held():

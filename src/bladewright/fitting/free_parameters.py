@@ -10,8 +10,8 @@ from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.derivatives.patterns import Patterns, chosen, matching
 from bladewright.designs import Design, value_at
-from bladewright.errors import DesignError, FitError
-from bladewright.fitting.checks import texts
+from bladewright.errors import FitError
+from bladewright.fitting.checks import refusing, texts
 from bladewright.numerics.elementary import Array
 from bladewright.section.laws import law_points
 from bladewright.section.profiles.points import PointsProfile
@@ -107,7 +107,7 @@ def _largest_curvature(values: Mapping[str, float]) -> set[str]:
 class FreeParameters:
     """Patterns of what is free, and of what is held at which values."""
 
-    free: Patterns = None
+    free: tuple[str, ...] | None = None
     fixed: tuple[str, ...] = ()
     values: Mapping[str, float] | None = None
     walls: bool = False
@@ -116,12 +116,18 @@ class FreeParameters:
     """edges and walls that are cut off or behind fillets: they are held"""
 
     def __call__(self, design: Design) -> tuple[str, ...]:
-        """The free parameters of a design; raises FitError where there are none."""
-        try:
+        """The free parameters of a design; raises FitError where there are none, or where no point shows one."""
+        paths = design.parameters()
+        never = {path for path in paths if path.startswith(NOT_IN_CLOUD)}
+        with refusing():
             wanted = chosen(design, self.free)
-            held = {path for pattern in self.fixed for path in matching(pattern, design.parameters())}
-        except DesignError as error:
-            raise FitError(str(error)) from error
+            held = never.union(*(matching(pattern, paths) for pattern in self.fixed))
+            hidden = [pattern for pattern in self.free or () if never.issuperset(matching(pattern, paths))]
+        if hidden:
+            raise FitError(
+                f"free names {', '.join(hidden)}, which the points of one blade do not show: no fit finds it, so leave "
+                "it out, and give its value in the start"
+            )
         if self.free is None:
             held |= gauge_parameters(design, walls=self.walls)
         held |= {path for place in self.unseen for path in parameters_of_curve(design, place)}
@@ -134,12 +140,10 @@ class FreeParameters:
         """The design with the given values."""
         if not self.values:
             return design
-        try:
+        with refusing():
             known = list(design.parameters())
             changes = {path: value for pattern, value in self.values.items() for path in matching(pattern, known)}
             return design.changed(changes)
-        except DesignError as error:
-            raise FitError(str(error)) from error
 
 
 def free_parameters_of(free: Patterns, fixed: "Patterns | Mapping[str, float]", *, started: bool) -> FreeParameters:
