@@ -40,12 +40,12 @@ _OTHER_FORMATS = {
 def read_cloud(path: str | os.PathLike[str], *, columns: Sequence[str] | None = None, unit: str | None = None) -> Cloud:
     """The points of a file, in metres; the format is recognised from the contents, not from the name.
 
-    Read are tables of table, separated by blanks, tabs, commas or semicolons, with or without column names, comments
+    Read are tables of numbers, separated by blanks, tabs, commas or semicolons, with or without column names, comments
     and point ids; Selig and Lednicer airfoils; SU2 surfaces; PLY, STL, VTK, VTP, VTU, NPY and NPZ.
     `columns` says what each column of the file is: `x`, `y`, `z`, `r`, `theta` [deg] or `skip`. They must give x y,
     x y z or x r theta, with y = r sin(theta) and z = r cos(theta). Without `columns`, the names above the columns
-    decide; without names, two table are x y and three are x y z, after a column of whole table that can only be
-    ids. `unit` is m, cm, mm, um, in or ft; without it, the unit that the column names state, or the metre.
+    decide; without names, two numbers in a row are x y and three are x y z, after a column of whole numbers that can
+    only be ids. `unit` is m, cm, mm, um, in or ft; without it, the unit that the column names state, or the metre.
 
     Raises FileError where there is no such file, or where it holds no such points.
     """
