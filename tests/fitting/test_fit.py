@@ -305,6 +305,11 @@ def test_a_blade_in_a_flow_path_is_found_again_from_a_start_and_its_flow_path_st
         (cloud(0, 400), {"progress": 3}, "progress is 3"),
         (cloud(0, 400), {"fixed": "stagger"}, "give a start"),
         (cloud(0, 400), {"start": BASE, "bounds": {"stagger": (3.0, 1.0)}}, "below the second"),
+        (
+            cloud(0, 400),
+            {"start": BASE, "bounds": {"stagger": (-40, -20)}, "fixed": {"stagger": -10}},
+            "bounds at once",
+        ),
         (cloud(0, 400), {"start": BASE, "bounds": {"staggr": (1.0, 3.0)}}, "'staggr'"),
         (cloud(0, 400), {"start": BASE, "free": "staggr"}, "'staggr'"),
     ],

@@ -130,6 +130,7 @@ def test_bounds_of_what_a_structure_lacks_are_passed_over():
     ("bounds", "words"),
     [
         ({"staggr": (1.0, 3.0)}, "'staggr'"),
+        ({"pitch": (1.0, 3.0)}, "'pitch' is held and has bounds at once"),
         ({"stagger": (100.0, 120.0)}, "the family allows -89 to 89"),
     ],
 )

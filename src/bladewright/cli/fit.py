@@ -48,7 +48,9 @@ def _parse_bounds(_: click.Context, __: click.Parameter, pairs: Sequence[str]) -
             limits = float(low) if low.strip() else -math.inf, float(high) if high.strip() else math.inf
         except ValueError:
             limits = math.nan, math.nan
-        if not (sign and comma and path.strip()) or not limits[0] <= limits[1]:
+        if limits[0] > limits[1]:
+            raise click.BadParameter(f"'{pair}' has its lowest value {low} above its highest {high}: exchange them")
+        if not (sign and comma and path.strip()) or math.isnan(sum(map(abs, limits))):
             raise click.BadParameter(f"'{pair}' is not PATH=LOW,HIGH: write it like --bound 'stagger[*]=-60,-40'")
         bounds[path.strip()] = limits
     return bounds

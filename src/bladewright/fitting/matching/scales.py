@@ -143,6 +143,12 @@ def check_bounds(design: Design, paths: Sequence[str], bounds: Mapping[str, tupl
         try:
             matched = matching(pattern, paths)
         except DesignError as error:
+            with suppress(DesignError):
+                matching(pattern, design.parameters())
+                raise FitError(
+                    f"'{pattern}' is held and has bounds at once: it is fixed, or not among what is free; leave its "
+                    "bounds out, or let it change"
+                ) from error
             raise FitError(f"bounds: {error}") from error
         for path, kind in zip(matched, _ranges(design, matched, 1.0), strict=True):
             if not max(kind.low, least) < min(kind.high, most):
