@@ -50,6 +50,8 @@ of the places' extent (design/matching_constants.md)"""
 ROW_DEGREE, ROW_TURNS, ROW_SETTLING_TURNS = 6, 30, 3
 """highest degree of the law by which a row may be off the wall, and turns in which it is found as a quantile, then by
 least squares (design/matching_constants.md)"""
+OWN_DEGREE = 12
+"""highest degree of a row's own law off a straight line, as hubs turn by a right angle (design/matching.md)"""
 CLEARLY_ALONE = 0.01
 """ratio of medians below which a row is told by a line of its own, not by its wall (design/matching.md)"""
 OUTER_QUANTILE = 0.2
@@ -193,22 +195,22 @@ def _off_row(wall: WallPoints, exact: ExactBlade) -> Reals:
     """
     t, normals, distances = wall.located(exact)
     inward = 1.0 if wall.name == "hub" else -1.0
-    by_wall = _off_law(2.0 * t - 1.0, distances, inward)
+    by_wall = _off_law(2.0 * t - 1.0, distances, inward, ROW_DEGREE)
     about = wall.places - np.mean(wall.places, axis=0)
     across, line = np.linalg.eigh(about.T @ about)[1].T
     way, off = about @ line, about @ across
     along = way / max(float(np.max(np.abs(way))), 1e-300)
-    alone = _off_law(along, off, inward * float(np.sign(np.sum(normals @ across))))
+    alone = _off_law(along, off, inward * float(np.sign(np.sum(normals @ across))), OWN_DEGREE)
     return alone if np.median(alone) < CLEARLY_ALONE * np.median(by_wall) else by_wall
 
 
-def _off_law(along: Reals, distances: Reals, inward: float) -> Reals:
-    """Magnitudes (m,) of what a polynomial along [-1, 1] leaves of distances (m,) of which most follow one.
+def _off_law(along: Reals, distances: Reals, inward: float, most: int) -> Reals:
+    """Magnitudes (m,) of what a polynomial of degree `most` along [-1, 1] leaves of distances (m,): most follow one.
 
     First it is that of a quantile, as places beside the row lie inwards of it only.
     Reference: Koenker and Bassett 1978 (quantiles), by iteratively reweighted least squares.
     """
-    degree = min(ROW_DEGREE, max(len(along) // FEWEST_ROW_POINTS - 1, 0))
+    degree = min(most, max(len(along) // FEWEST_ROW_POINTS - 1, 0))
     terms = np.polynomial.chebyshev.chebvander(along, degree)
     roots, left = np.ones(len(along)), distances
     for _ in range(ROW_TURNS):
