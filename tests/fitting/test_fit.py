@@ -133,6 +133,13 @@ def test_as_many_parameters_as_are_asked_for():
     found = fit(cloud(0, 200), parameters=22)
     assert len(found.estimates) == 22
     assert found.maximum < 1e-3 * float(found.built.chord)
+    assert not any("asked for" in each for each in found.notes)
+
+
+def test_another_number_of_parameters_than_is_asked_for_is_said():
+    found = fit(cloud(0, 200), parameters=15)
+    assert len(found.estimates) > 15
+    assert any(f"{len(found.estimates)} parameters, and 15 were asked for" in each for each in found.notes)
 
 
 def test_start_fixed_and_bounds_are_kept():

@@ -47,6 +47,7 @@ QUICK_POINTS, SEVERAL_POINTS, THOROUGH_POINTS = 1000, 4000, 12_000
 WEAK_REGULARISATION = 0.1
 """factor of the regularisation where a match is only improved (design/matching_constants.md)"""
 CORNERS_HELD_NOTE = "the radii of the channel's corners are read off the points, held, and not counted"
+COUNT_NOTE = "the design has {} parameters, and {} were asked for: no structure of that many was found that is nearer"
 HELD_NOTE = "held where a smooth design has them, as the points do not determine them: {}"
 DETERMINED_MARGIN, MOST_HOLDINGS = 1.5, 3
 """standard deviations that a determined direction of the parameters has in its own scale at least, and how often
@@ -124,7 +125,9 @@ def reduced_match(begun: RichMatch, target: MatchTarget) -> tuple[Match, str]:
     if target.parameters is not None:
         sized = search.of_size(rich, target.parameters)
         fitting = sized if len(sized.problem.paths) <= target.parameters else begun.first
-        return _searched_further(many, fitting), begun.note
+        count, asked = len(fitting.problem.paths), target.parameters
+        other = "" if count == asked else COUNT_NOTE.format(count, asked)
+        return _searched_further(many, fitting), "; ".join(filter(None, (begun.note, other)))
     last, note = determined(many, search.near_everywhere(rich))
     limit = trusted_distance(last)
     lost = has_systematic_misfit(last) and last.maximum > limit
