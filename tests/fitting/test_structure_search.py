@@ -152,15 +152,19 @@ def test_exact_points_that_need_nearly_every_control_point_are_met_nearly(monkey
     at_noise, near, far = (1e-9, 1e-8), (1e-6, 3e-5), (1e-4, 1e-3)
     left = {n: at_noise if n >= needed else near if n >= 12 else far for n in range(RICH, 8, -1)}
     predictions = [SimpleNamespace(parameters=n, deviation=d, largest=most) for n, (d, most) in left.items()]
-    model = SimpleNamespace(counts=(), points=1000, prediction=lambda _: predictions[0])
-    offered = []
-    monkeypatch.setattr(structure_search, "eliminated", lambda *_: predictions)
+    rich, offered, none = match(RICH, 1e-8), [], []
+    model = SimpleNamespace(match=rich, counts=(), points=1000, prediction=lambda _: predictions[0])
+    narrow = SimpleNamespace(match=match(20, 1e-5))
+    monkeypatch.setattr(structure_search, "eliminated", lambda at, _: predictions if at is model else predictions[-1:])
     monkeypatch.setattr(structure_search, "has_systematic_misfit", lambda _: False)
     monkeypatch.setattr(structure_search, "is_exact", lambda _: exact)
     monkeypatch.setattr(StructureSearch, "_model", lambda *_: model)
     monkeypatch.setattr(
-        StructureSearch, "_fewest", lambda *_, predicted, **__: (offered.extend(predicted(model)), None)
+        StructureSearch,
+        "_fewest",
+        lambda *_, predicted, **__: (none.extend(predicted(narrow)), offered.extend(predicted(model))),
     )
-    rich = match(RICH, 1e-8)
     StructureSearch(task=None, samples=0, first=None).well_predicted(rich)
     assert min(each.parameters for each in offered) == fewest
+    # about a narrower match nothing may be predicted to reach the aim
+    assert none == []

@@ -179,7 +179,8 @@ class StructureSearch:
             if not systematic:
                 at_noise = [each for each in candidates if each.deviation <= noise]
                 # exact points that need nearly every control point have another structure: near is enough
-                systematic = exact and min(each.parameters for each in at_noise) > WORTHWHILE * len(rich.problem.paths)
+                fewest = min((each.parameters for each in at_noise), default=0)
+                systematic = exact and model.match is rich and fewest > WORTHWHILE * len(rich.problem.paths)
             if not systematic:
                 return at_noise
             nearest = NEAR_RICH * min((each.largest for each in candidates), default=0.0)
