@@ -308,6 +308,17 @@ def test_no_file_is_written_in_the_place_of_another(words, message, run, cloud_f
 
 
 @pytest.mark.usefixtures("stub")
+def test_a_table_of_deviations_takes_no_other_files_place_without_force(run, cloud_file, design, tmp_path):
+    other = tmp_path / "other.toml"
+    bw.write_design(design, other)
+    before = other.read_bytes()
+    found = run("fit", cloud_file, "--unit", "mm", "--deviations", str(other))
+    assert found.status == 2
+    assert "exists already: name another file with --deviations" in found.err
+    assert other.read_bytes() == before
+
+
+@pytest.mark.usefixtures("stub")
 def test_bad_clouds_are_refused_in_one_paragraph(run, tmp_path):
     for content, message in (("", "is empty"), ("1 2\n3 nan\n", "line 2"), ("1 2\n3 x\n", "'x' at line 2, column 2")):
         path = tmp_path / "cloud.txt"

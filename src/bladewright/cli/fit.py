@@ -204,6 +204,8 @@ def fit(
     onto_start = _same_file(design, start)
     if not (force or onto_start):
         refuse_existing(design)
+        if deviations is not None:
+            refuse_existing(deviations, "--deviations")
     if picture is not None:
         _check_picture(picture, beside=design)
     refuse_same_file(

@@ -12,10 +12,10 @@ from bladewright.errors import FileError
 from bladewright.origin import Origin
 
 
-def refuse_existing(path: Path) -> None:
+def refuse_existing(path: Path, option: str = "-o") -> None:
     """Raise FileError where there is a file already, for a command that was not given `--force`."""
     if path.is_file():
-        raise FileError(f"'{path}' exists already: name another file with -o, or overwrite it with --force")
+        raise FileError(f"'{path}' exists already: name another file with {option}, or overwrite it with --force")
 
 
 def refuse_same_file(read: Mapping[str, Path | None], written: Mapping[str, Path | None]) -> None:
