@@ -49,7 +49,7 @@ def sample(path: str | os.PathLike[str], count: int = 10_000, *, seed: int = 0) 
         faces = [file_face(face) for face in file.faces]
         edges = [TopoDS.Edge_s(edge) for edge in subshapes(file.shape, TopAbs_EDGE)]
     curves = [BRepAdaptor_Curve(edge) for edge in edges if not BRep_Tool.Degenerated_s(edge)]
-    on_edges = round(EDGE_SHARE * count)
+    on_edges = round(EDGE_SHARE * count) if curves else 0
     face_counts = _counts([face.area for face in faces], count - on_edges)
     edge_counts = _counts([GCPnts_AbscissaPoint.Length_s(curve) for curve in curves], on_edges)
     drawn = [_of_region(face.region, int(each), random) for face, each in zip(faces, face_counts, strict=True)]

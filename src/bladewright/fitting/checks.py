@@ -51,10 +51,10 @@ def check_progress(progress: Any) -> None:
 
 
 def reals(what: str, given: Any, cure: str) -> Reals:
-    """An array of what was given, which may be complex where no imaginary part is left."""
+    """A new array of what was given, which may be complex where no imaginary part is left; raises FitError else."""
     try:
         found = np.asarray(given)
-        real = np.asarray(found.real if np.iscomplexobj(found) else found, dtype=np.float64)
+        real = np.array(found.real if np.iscomplexobj(found) else found, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise FitError(f"{what} are not numbers ({error}): {cure}") from error
     if np.iscomplexobj(found) and np.any(found.imag):

@@ -75,10 +75,8 @@ def checked_cloud(cloud: ArrayLike) -> Reals:
 
 def different_points(points: Reals, kind: str = "") -> Reals:
     """The different ones of points (n, 2) or (n, 3), thinned; raises FitError where these of a `kind` are too few."""
-    different, fewest = (
-        np.unique(points[random_subset(len(points), MOST_POINTS)], axis=0),
-        FEWEST_POINTS[points.shape[1]],
-    )
+    different = np.unique(points[random_subset(len(points), MOST_POINTS)], axis=0)
+    fewest = FEWEST_POINTS[points.shape[1]]
     if len(different) < fewest:
         raise FitError(
             f"the cloud has {len(different)} different points{kind}: at least {fewest} are needed; give more points of "

@@ -64,7 +64,7 @@ class DesignHeader:
                 )
 
     def check_place(self, dimension: int, start: Any = None) -> None:
-        """Refuse what points of so many coordinates do not have, or a start, whose own values are kept, otherwise."""
+        """Raise FitError for what points of so many coordinates do not have, or what a start has otherwise."""
         for name in ("arrangement", "blade_count"):
             if dimension == 2 and getattr(self, name) is not None:
                 raise FitError(
@@ -80,9 +80,11 @@ class DesignHeader:
             stated = getattr(self, name)
             same = math.isclose(stated, value) if name == "pitch" and stated and value else stated == value
             if stated is not None and not same:
+                unit = " m" if name == "pitch" else ""
+                kept = "none" if value is None else f"{value}{unit}"
                 raise FitError(
-                    f"{name} is {stated}, and the start has {'none' if value is None else value}, which is kept: leave "
-                    f"{name} out, or change it in the start's file"
+                    f"{name} is {stated}{unit}, and the start has {kept}, which is kept: leave {name} out, or change "
+                    "the start"
                 )
 
     def known(self, like: Any = None) -> dict[str, Any]:
