@@ -81,14 +81,13 @@ def test_a_richer_structure_that_is_no_nearer_ends_the_search_for_rich_ones(monk
 
     def search(*_, **__):
         rms, maximum = next(off)
-        searched.append(SimpleNamespace(rms=rms, maximum=maximum, design=None))
+        searched.append(SimpleNamespace(rms=rms, maximum=maximum, design=None, has_systematic_misfit=True))
         if len(searched) > 5:
             raise AssertionError("it is searched for ever")
         return searched[-1]
 
     for name, stand_in in {
         "searched": search,
-        "has_systematic_misfit": lambda _: True,
         "rich_structure": lambda *_, **__: None,
         "wider_structure": lambda *_, **__: None,
         "widened_where_feasible": lambda design, _: design,
@@ -136,10 +135,12 @@ def test_a_rich_structure_keeps_to_its_samples_where_neither_number_nor_structur
 def test_a_match_is_sought_again_where_it_is_clearly_further_off_than_the_rich_one(monkeypatch, rich, found, again):
     largest = {"rich": rich, "found": found, "nearer": 0.9 * found}
     of = {
-        name: SimpleNamespace(maximum=distance, model=SimpleNamespace(chord=1.0)) for name, distance in largest.items()
+        name: SimpleNamespace(
+            maximum=distance, model=SimpleNamespace(chord=1.0), design=None, has_systematic_misfit=True
+        )
+        for name, distance in largest.items()
     }
-    monkeypatch.setattr(structure_search, "has_systematic_misfit", lambda _: True)
-    monkeypatch.setattr(structure_search, "is_refused", lambda _: False)
+    monkeypatch.setattr(structure_search, "can_be_built", lambda _: True)
     monkeypatch.setattr(StructureSearch, "well_predicted", lambda *_: of["found"])
     monkeypatch.setattr(StructureSearch, "within", lambda *_: (of["nearer"], ""))
     search = StructureSearch(task=None, samples=0, first=None)
@@ -153,11 +154,10 @@ def test_exact_points_that_need_nearly_every_control_point_are_met_nearly(monkey
     left = {n: at_noise if n >= needed else near if n >= 12 else far for n in range(RICH, 8, -1)}
     predictions = [SimpleNamespace(parameters=n, deviation=d, largest=most) for n, (d, most) in left.items()]
     rich, offered, none = match(RICH, 1e-8), [], []
+    rich.has_systematic_misfit, rich.is_exact = False, exact
     model = SimpleNamespace(match=rich, counts=(), points=1000, prediction=lambda _: predictions[0])
     narrow = SimpleNamespace(match=match(20, 1e-5))
     monkeypatch.setattr(structure_search, "eliminated", lambda at, _: predictions if at is model else predictions[-1:])
-    monkeypatch.setattr(structure_search, "has_systematic_misfit", lambda _: False)
-    monkeypatch.setattr(structure_search, "is_exact", lambda _: exact)
     monkeypatch.setattr(StructureSearch, "_model", lambda *_: model)
     monkeypatch.setattr(
         StructureSearch,

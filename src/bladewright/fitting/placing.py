@@ -27,14 +27,7 @@ from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.clouds.walls import Walls
 from bladewright.fitting.free_parameters import EDGES, WALLS, FreeParameters
 from bladewright.fitting.matching.noise import EXACT
-from bladewright.fitting.matching.search import (
-    QUICK_ROUNDS,
-    ROUGH_REDUCTION,
-    Match,
-    Task,
-    has_systematic_misfit,
-    searched,
-)
+from bladewright.fitting.matching.search import QUICK_ROUNDS, ROUGH_REDUCTION, Match, Task, searched
 from bladewright.fitting.model_selection.selection import QUICK_POINTS
 from bladewright.fitting.registration import (
     OTHER_BLADE_NOTE,
@@ -188,7 +181,7 @@ def realigned(turns: list[PlacedTask], found: Matched, place: Place, match: Call
     """
     for _ in range(MOST_REALIGNMENTS):
         here, before = turns[-1], found[0]
-        step = _step_beside(before) if has_systematic_misfit(before) else None
+        step = _step_beside(before) if before.has_systematic_misfit else None
         if here.motion is None or step is None:
             break
         here.every.progress("axes")

@@ -15,13 +15,7 @@ from bladewright.fitting.assessment.measurement import Measurement
 from bladewright.fitting.assessment.result import with_unit
 from bladewright.fitting.clouds.thinning import groups
 from bladewright.fitting.matching.footpoints import BETWEEN_EDGES, EDGE_PARAMETERS, Footpoints
-from bladewright.fitting.matching.noise import (
-    EXACT,
-    LARGEST_GROUP,
-    NEIGHBOURS,
-    SIGNIFICANCE,
-    crowded_at_edges,
-)
+from bladewright.fitting.matching.noise import EXACT, LARGEST_GROUP, NEIGHBOURS, SIGNIFICANCE, crowded_at_edges
 from bladewright.fitting.matching.search import Match
 from bladewright.nurbs.basis import Reals
 

@@ -20,15 +20,7 @@ from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.section import first_section
 from bladewright.fitting.matching.noise import OUTLYING_MISFIT
 from bladewright.fitting.matching.scales import check_bounds
-from bladewright.fitting.matching.search import (
-    ROUGH_REDUCTION,
-    Match,
-    Task,
-    can_be_built,
-    has_systematic_misfit,
-    is_exact,
-    searched,
-)
+from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, can_be_built, searched
 from bladewright.fitting.model_selection.selection import QUICK_POINTS, determined, selected_match
 from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.fitting.model_selection.structure_search import NEAR
@@ -146,7 +138,7 @@ def _worst_neighbourhood(match: Match) -> float:
 def _has_misfit(match: Match) -> bool:
     """Whether points lie further off than their noise, as a whole or anywhere beside each other."""
     allowed = chdtri(BESIDE, BY_CHANCE / np.count_nonzero(match.rows)) / BESIDE
-    return has_systematic_misfit(match) or _worst_neighbourhood(match) > allowed * match.noise_estimate.noise**2
+    return match.has_systematic_misfit or _worst_neighbourhood(match) > allowed * match.noise_estimate.noise**2
 
 
 def is_far(match: Match, target: MatchTarget, open_limit: float | None = None) -> bool:
@@ -154,7 +146,7 @@ def is_far(match: Match, target: MatchTarget, open_limit: float | None = None) -
 
     Without it exact points are met more nearly than others.
     """
-    share = open_limit or (OUTLINE_DEVIATION if is_exact(match) else NEAR_EVERYWHERE)
+    share = open_limit or (OUTLINE_DEVIATION if match.is_exact else NEAR_EVERYWHERE)
     limit = share * match.model.chord if target.tolerance is None else target.tolerance
     short = target.parameters is not None and len(match.problem.paths) < target.parameters
     return (short or (target.parameters is None and match.maximum > limit)) and _has_misfit(match)

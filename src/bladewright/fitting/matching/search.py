@@ -189,30 +189,25 @@ class Match:
         """Largest distance of those points [m]."""
         return float(np.max(self.state.footpoints.distances[self.rows]))
 
+    @property
+    def has_systematic_misfit(self) -> bool:
+        """Whether the misfit is not noise: neighbours share it, or few points are far off."""
+        estimate = self.noise_estimate
+        return estimate.correlation > NOISE_CORRELATION or self.rms * self.model.chord > FAR_OFF * estimate.noise
 
-def has_systematic_misfit(match: Match) -> bool:
-    """Whether a search ended at a misfit that is not noise: neighbours share it, or few points are far off."""
-    estimate = match.noise_estimate
-    return estimate.correlation > NOISE_CORRELATION or match.rms * match.model.chord > FAR_OFF * estimate.noise
-
-
-def is_exact(match: Match) -> bool:
-    """Whether neighbouring points tell that a cloud has next to no noise."""
-    return match.noise_estimate.noise < EXACT_NOISE * match.model.chord
+    @property
+    def is_exact(self) -> bool:
+        """Whether neighbouring points tell that the cloud has next to no noise."""
+        return self.noise_estimate.noise < EXACT_NOISE * self.model.chord
 
 
 def can_be_built(design: Any) -> bool:
-    """Whether `build` does not refuse a design."""
+    """Whether `build` does not refuse a design; it may, though searches allow it: edge radii need a larger margin."""
     try:
         design.build()
     except DesignError:
         return False
     return True
-
-
-def is_refused(match: Match) -> bool:
-    """Whether a design that searches allow is refused when it is built: its edge radii need a larger margin."""
-    return not can_be_built(match.design)
 
 
 def searched(
@@ -255,7 +250,7 @@ def searched(
             break
         last = found.rms if noise is None else noise
         noise = found.rms * (max(ratio, 1e-3) if ratio < FAST_RATIO else 1.0)
-        if has_systematic_misfit(found):
+        if found.has_systematic_misfit:
             least = REGULARISATION_DECAY * last if fading else last
             noise = min(noise, max(least, found.noise_estimate.noise / found.model.chord))
     return found
@@ -346,7 +341,7 @@ def _moved(match: Match, z: Reals) -> Match:
 
 def without_false_outliers(task: Task, match: Match) -> Match:
     """A match to those outliers too that may be points of a nose that is not found, where it takes most of them."""
-    inliers, feet, systematic = match.noise_estimate.inliers, match.state.footpoints, has_systematic_misfit(match)
+    inliers, feet, systematic = match.noise_estimate.inliers, match.state.footpoints, match.has_systematic_misfit
     doubted = doubted_outliers(~inliers & ~match.ends.on_end_face, task.points, feet, systematic=systematic)
     if not np.any(doubted):
         return match

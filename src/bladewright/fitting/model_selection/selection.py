@@ -16,9 +16,8 @@ from bladewright.fitting.matching.search import (
     ROUGH_REDUCTION,
     Match,
     Task,
+    can_be_built,
     evaluated,
-    has_systematic_misfit,
-    is_refused,
     searched,
     without_false_outliers,
 )
@@ -130,7 +129,7 @@ def reduced_match(begun: RichMatch, target: MatchTarget) -> tuple[Match, str]:
         return _searched_further(many, fitting), "; ".join(filter(None, (begun.note, other)))
     last, note = determined(many, search.near_everywhere(rich))
     limit = trusted_distance(last)
-    lost = has_systematic_misfit(last) and last.maximum > limit
+    lost = last.has_systematic_misfit and last.maximum > limit
     if lost and evaluated(many, rich.design, noise=rich.rms).maximum <= limit:
         # what the last search left out or held made it miss what was predicted, which the rich match keeps
         within, _ = search.within(rich, ENOUGH * rich.model.chord)
@@ -143,7 +142,7 @@ def _searched_further(task: Task, match: Match) -> Match:
     try:
         found = searched(task, match.design, noise=match.rms, min_reduction=FINAL_REDUCTION)
         near = max(trusted_distance(match), NEAR_RICH * match.maximum)
-        if found.maximum > near or (is_refused(found) and not is_refused(match)):
+        if found.maximum > near or (not can_be_built(found.design) and can_be_built(match.design)):
             found = evaluated(task, match.design, noise=match.rms)
     except FitError:
         return match
@@ -168,7 +167,7 @@ def _of_structure(several: Task, many: Task, found: Match, structure: Structure 
     if structure is not None:
         search = StructureSearch(task=several, samples=structure.samples, first=found.design)
         tried, starts = ([found], []) if structure_of(found.design) == structure else ([], [found])
-        if not tried or has_systematic_misfit(found):
+        if not tried or found.has_systematic_misfit:
             starts.append(search.rich(found, MatchTarget(structured=True)))
         for start in starts:
             with suppress(FitError):
@@ -176,10 +175,10 @@ def _of_structure(several: Task, many: Task, found: Match, structure: Structure 
         if not tried:
             return found
         found = min(tried, key=lambda each: each.rms)
-        if several.dimension == 2 and found.maximum > NEAR * found.model.chord and has_systematic_misfit(found):
+        if several.dimension == 2 and found.maximum > NEAR * found.model.chord and found.has_systematic_misfit:
             found = min((found, *from_other_edges(several, found, GUESS_NOISE)), key=lambda each: each.rms)
     found = searched(many, found.design)
-    if has_systematic_misfit(found):
+    if found.has_systematic_misfit:
         return found
     # what the points determine is not to be shifted
     weak = replace(many, regularisation_factor=WEAK_REGULARISATION * many.regularisation_factor)

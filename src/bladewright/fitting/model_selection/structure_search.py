@@ -22,10 +22,8 @@ from bladewright.fitting.matching.search import (
     ROUGH_REDUCTION,
     Match,
     Task,
+    can_be_built,
     evaluated,
-    has_systematic_misfit,
-    is_exact,
-    is_refused,
     searched,
 )
 from bladewright.fitting.model_selection.elimination import (
@@ -97,11 +95,11 @@ class StructureSearch:
         first_structure = partial(rich_structure, sampled=target.open or target.tolerance is not None)
         search = partial(searched, min_reduction=ROUGH_REDUCTION, settled=SETTLED_RICH, fading=True)
         shown = len(self.task.points), self._rows_shown(match)
-        while found is match or (has_systematic_misfit(found) and not self._is_enough(found, target)):
+        while found is match or (found.has_systematic_misfit and not self._is_enough(found, target)):
             try:
                 # in space structures begin without what they are predicted not to need; exact clouds, and those of
                 # which something is asked, lose that before they grow as well
-                slim = self.task.dimension == 3 and (not target.open or is_exact(found))
+                slim = self.task.dimension == 3 and (not target.open or found.is_exact)
                 about = self._without_surplus(found) if slim and found is not match else found.design
                 widened = first_structure if found is match else partial(wider_structure, slim=slim)
                 design = widened_where_feasible(about, widened(about, self.task.free(about), *shown))
@@ -126,7 +124,7 @@ class StructureSearch:
     def _is_enough(self, rich: Match, target: MatchTarget) -> bool:
         """Whether a rich match needs no richer one: where nothing is asked, exact points are met more nearly."""
         if target.open:
-            return rich.maximum <= (NEAR_RICH * NEAR if is_exact(rich) else NEAR_EVERYWHERE) * rich.model.chord
+            return rich.maximum <= (NEAR_RICH * NEAR if rich.is_exact else NEAR_EVERYWHERE) * rich.model.chord
         return target.tolerance is None or rich.maximum <= TO_SPARE * target.tolerance
 
     def _without_surplus(self, rich: Match, most: float = np.inf) -> Design:
@@ -154,7 +152,7 @@ class StructureSearch:
 
     def _built(self, match: Match) -> Match | None:
         """A match that can be built: where it is refused, one whose edge radii are kept further from what is."""
-        if not is_refused(match):
+        if can_be_built(match.design):
             return match
         roots = match.problem.cloud_residuals.roots
         weights = np.where(roots > 0.0, roots**2, self.task.weights)
@@ -163,7 +161,7 @@ class StructureSearch:
             found = searched(task, match.design, noise=match.rms, rounds=1, min_reduction=ROUGH_REDUCTION)
         except FitError:
             return None
-        return None if is_refused(found) else found
+        return found if can_be_built(found.design) else None
 
     def well_predicted(self, rich: Match) -> Match:
         """The match of fewest parameters that is at the cloud's noise, or where its misfit is none, near everywhere."""
@@ -171,7 +169,7 @@ class StructureSearch:
         # what the rich match leaves is the noise, where its neighbours share none of it (Morozov 1966)
         whole = model.prediction(model.counts)
         noise = (0.0 if whole is None else whole.deviation) * (1.0 + NOISE_QUANTILE / np.sqrt(2.0 * model.points))
-        systematic, exact, least = has_systematic_misfit(rich), is_exact(rich), rich.maximum
+        systematic, exact, least = rich.has_systematic_misfit, rich.is_exact, rich.maximum
 
         def predicted(model: LinearModel) -> list[Prediction]:
             nonlocal systematic
@@ -193,7 +191,7 @@ class StructureSearch:
             largest, chord = match.maximum, rich.model.chord
             least = min(least, largest)
             limit = NEAR if exact or least <= NEAR * chord else NEAR_EVERYWHERE
-            return not has_systematic_misfit(match) or largest <= max(limit * chord, NEAR_RICH * least)
+            return not match.has_systematic_misfit or largest <= max(limit * chord, NEAR_RICH * least)
 
         found, nearby = self._fewest(rich, None, predicted=predicted, search=self._searched, kept=kept)
         return found or nearby or rich
@@ -203,10 +201,10 @@ class StructureSearch:
         found, limit = self.well_predicted(rich), trusted_distance(rich)
         # hardly further than the rich match is near enough
         enough = max(limit, min(NEAR_RICH * rich.maximum, NEAR_EVERYWHERE * rich.model.chord))
-        if not has_systematic_misfit(found) or found.maximum <= enough or rich.maximum > limit:
+        if not found.has_systematic_misfit or found.maximum <= enough or rich.maximum > limit:
             return found
         nearer, _ = self.within(rich, limit)
-        return nearer if nearer.maximum < found.maximum and not is_refused(nearer) else found
+        return nearer if nearer.maximum < found.maximum and can_be_built(nearer.design) else found
 
     def within(self, rich: Match, tolerance: float) -> tuple[Match, str]:
         """The match of fewest parameters found that keeps a tolerance [m]; the nearest, and why, where none does."""
@@ -222,15 +220,15 @@ class StructureSearch:
         def kept(match: Match) -> bool:
             return match.maximum <= tolerance
 
-        found, nearest = rich if kept(rich) and not is_refused(rich) else None, None
-        if kept(rich) or has_systematic_misfit(rich):
+        found, nearest = rich if kept(rich) and can_be_built(rich.design) else None, None
+        if kept(rich) or rich.has_systematic_misfit:
             found, nearest = self._fewest(
                 rich, found, rounds=1, predicted=predicted, search=reweighted_search, kept=kept
             )
         if found is not None:
             return found, ""
         nearest = min(filter(None, (rich, nearest)), key=lambda each: each.maximum)
-        if not has_systematic_misfit(nearest):
+        if not nearest.has_systematic_misfit:
             return self.well_predicted(rich), NOISE_REASON.format(1e3 * rich.noise_estimate.noise)
         return nearest, "no structure was found that keeps the tolerance"
 
