@@ -43,7 +43,6 @@ ROWS = {
     "models/model.py": ("naca-blunt-exact-profile", "naca-blunt-noisy-profile"),
     "freeform": ("plain-curve", "plain-surface", "plain-profile"),
     "initial_guess": ("guess-Rotor67", "guess-compressor-stator", "guess-radial-stator"),
-    "initial_guess/section.py": (*SECTIONS,),
     "assessment": ("LS89-free", "ls89-half", "ls89-suction", "naca-blunt-noisy-unified", "naca-sharp-noisy-unified"),
     "families": ("Aachen2D-suction-pressure", "naca-sharp-noisy-profile"),
     "families/segmented.py": ("example-morphing-airfoil",),

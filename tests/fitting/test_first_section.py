@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bladewright.fitting.families.unified import first_section
 from bladewright.fitting.free_parameters import FreeParameters
-from bladewright.fitting.initial_guess.section import first_section
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Task, searched
 from bladewright.fitting.model_selection.other_minima import nearest_from_other_edges
 from bladewright.fitting.model_selection.selection import GUESS_NOISE

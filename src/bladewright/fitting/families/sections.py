@@ -15,9 +15,8 @@ from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, MatchTarg
 from bladewright.fitting.families.first_parts import through_points
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
 from bladewright.fitting.families.section_shape import SectionShape, section_shape
-from bladewright.fitting.families.unified import matched_unified
+from bladewright.fitting.families.unified import first_section, matched_unified
 from bladewright.fitting.free_parameters import FreeParameters
-from bladewright.fitting.initial_guess.section import first_section
 from bladewright.fitting.matching.noise import OUTLYING_MISFIT
 from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, can_be_built, searched
