@@ -50,7 +50,6 @@ ROWS = {
     "families/flow_path.py": ("twisted-blunt-noisy-profile",),
     "families/blades.py": ("twisted-blunt-noisy-profile",),
     "families/first_blades.py": ("twisted-blunt-noisy-profile",),
-    "families/laws.py": ("twisted-blunt-noisy-profile",),
     "families/sections.py": ("example-compressor-stator", "Aachen2D-suction-pressure"),
     "fit.py": ("LS89-free",),
     "model_selection/laws.py": ("twisted-blunt-noisy-profile", "example-morphing-airfoil"),

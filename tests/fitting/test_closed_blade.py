@@ -6,8 +6,14 @@ import numpy as np
 import pytest
 
 from bladewright.blade.design.sectioned import SectionedBlade
-from bladewright.fitting.families.first_blades import RICH_LAW_COUNT, closed_blades
-from bladewright.fitting.families.laws import LAW_COUNT, SECTION_SPANS, part_of_laws, with_mean_laws
+from bladewright.fitting.families.first_blades import (
+    LAW_COUNT,
+    RICH_LAW_COUNT,
+    SECTION_SPANS,
+    closed_blades,
+    part_of_laws,
+    with_mean_laws,
+)
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.matching.footpoints import nearest_footpoints
