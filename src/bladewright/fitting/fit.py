@@ -200,10 +200,7 @@ def _ways_of(
 
 
 def named_family(family: str, dimension: int, given: Design | None) -> FitFamily | None:
-    """The named family, or that of a given design where none is named; None is the unified one.
-
-    Raises FitError where the name is unknown or of the other dimension.
-    """
+    """The named family, or a given design's where none is named; None is the unified one. Refuses unknown names."""
     known = ["unified", "unified-section", *FAMILIES, *(f"{name}-section" for name in FAMILIES)]
     with refusing():
         choice("family", family, known)

@@ -71,10 +71,7 @@ def finished(design: Design, given: RowDesign) -> Design:
 def without_finishing(
     start: Design | None, like: Design | None, name: str
 ) -> tuple[RowDesign | None, Design | None, Design | None]:
-    """The first with cuts and fillets of a start and what the design is to be like, and both without them.
-
-    Where no start is given, `like` is the start, as no cloud holds what is cut off or behind a fillet.
-    """
+    """The design with cuts and fillets, and start and `like` without them; where none is given `like` is the start."""
     given = next((each for each in (start, like) if isinstance(each, RowDesign) and each.plain is not each), None)
     if given is None:
         return None, start, like
@@ -152,10 +149,7 @@ Matched = tuple[Match, Any, str]
 def shown_of(
     every: Task, start: Design | None, given: RowDesign | None, free: FreeParameters, walls: Walls
 ) -> tuple[Task, NDArray[np.str_] | None]:
-    """The task without what walls, cuts and fillets hide, and (n,) what that is; None where there are none of them.
-
-    Of cuts and fillets it is a `face`; edges and walls that they hide are held.
-    """
+    """The task without what walls, cuts and fillets hide, whose own edges and walls are held, and (n,) what that is."""
     if given is None or start is None:
         if not walls.places:
             return every, None
@@ -175,10 +169,7 @@ def shown_of(
 
 
 def realigned(turns: list[PlacedTask], found: Matched, place: Place, match: Callable[[PlacedTask], Matched]) -> Matched:
-    """The nearest of matches that take turns with steps of the motion, while misfits are systematic and fall.
-
-    `turns` holds the tasks so far, and its last is that of the match handed back.
-    """
+    """The nearest of matches that follow steps of the motion, while misfits fall; `turns` holds the tasks so far."""
     for _ in range(MOST_REALIGNMENTS):
         here, before = turns[-1], found[0]
         step = _step_beside(before) if before.has_systematic_misfit else None

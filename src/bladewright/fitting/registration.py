@@ -70,10 +70,7 @@ which they are held there, and these, unit vectors (m, d)"""
 
 
 def registrations(points: Reals, design: Design) -> list[tuple[Motion, tuple[str, ...]]]:
-    """The motions of points (n, d) [m] that lie anywhere onto what a design builds, found without a guess, and notes.
-
-    The nearest comes first; others follow that are about as near where the shape is, as of a flat blade turned over.
-    """
+    """The motions of points (n, d) [m] onto what a design builds, nearest first with those about as near, and notes."""
     built = design.build()
     sides = sides_of(built)
     samples = _samples(sides, points.shape[1])

@@ -308,10 +308,7 @@ class Acceptance:
 
 
 def _largest_group(feet: Footpoints, outliers: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """The largest group of outliers (n,) beside each other, where there may be one that is too large.
-
-    Outliers scatter; a part of the blade that is not found does not.
-    """
+    """The largest group of outliers (n,) beside each other, if too large: a part that is not found does not scatter."""
     points, rows = feet.points + feet.miss, np.flatnonzero(outliers)
     if len(rows) <= LARGEST_GROUP * len(points):
         return rows[:0]

@@ -168,10 +168,7 @@ def bare_stretches(match: Match) -> list[tuple[float, str]]:
 
 
 def _place_between(first: float, last: float, upper: Reals, lower: Reals) -> str:
-    """The edge, or the part of a side, in a gap between two lengths [m] from the leading edge along the upper side.
-
-    The lengths (n,) [m] of both sides up to even places in u are given. A point at an edge that ends the gap shows it.
-    """
+    """The edge, or the part of a side, in a gap between two lengths [m] from the leading edge along the upper side."""
     whole, u = upper[-1] + lower[-1], np.linspace(0.0, 1.0, len(upper))
     for edge, place in (("leading edge", whole), ("trailing edge", upper[-1])):
         if min(place - first, last - place) > AT_EDGE * (last - first):
@@ -201,10 +198,7 @@ def shape_bands(match: Match) -> ShapeBands:
 
 
 def bare_places(match: Match, bands: ShapeBands, known: NDArray[np.bool_]) -> dict[str, NDArray[np.bool_]]:
-    """Which places (n,) at each edge and end are past all points of their side, outliers too, where others are known.
-
-    Compared are points of the same of five parts of the span, and of the chord. Sections have no ends.
-    """
+    """Which places (n,) at each edge and end are past all points of their side and part, where others are known."""
     feet, found = match.state.footpoints, {}
     borders = {name: (end, bands.at_edge, bands.u, bands.v, feet.u, feet.v) for name, end in EDGE_PARAMETERS.items()}
     if match.state.shape.exact is not None:

@@ -211,10 +211,7 @@ class Fit(PlacesOfPoints, ParameterEstimates, FrozenRecord, Shown):
         return f"<Fit '{name}' of {type(self.design).__name__}: {verdict}; {points}, {off}>"
 
     def __str__(self) -> str:
-        """For people: whether it passes and why not, deviations by region, then the parameters.
-
-        Lengths are in the design's own unit.
-        """
+        """For people: whether it passes and why not, deviations by region, parameters; in the design's own unit."""
         design, off = self.design, self.distances[self.outliers]
         result = ("passed" if self.passed else "FAILED") + (", interrupted" if self.interrupted else "")
         tolerance = "" if self.tolerance is None else f"tolerance {with_unit(design, self.tolerance)}, "

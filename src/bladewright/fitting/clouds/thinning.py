@@ -24,10 +24,7 @@ def random_subset(count: int, most: int) -> NDArray[np.intp]:
 
 
 def even_subset(points: Reals, most: int) -> NDArray[np.intp]:
-    """Indices, in order, of at most `most` of points (n, d): the middle one of each cell of a grid.
-
-    The grid is the finest one with so few occupied cells. The order of the points does not matter.
-    """
+    """Indices, in order, of at most so many of points (n, d): the middle ones of the cells of the finest grid."""
     if len(points) <= most:
         return np.arange(len(points), dtype=np.intp)
     offset = points - points.min(axis=0)

@@ -100,10 +100,7 @@ class _Sheet:
 
 
 def walls_of(points: Reals, arrangement: Arrangement | None) -> Walls:
-    """Hub and shroud as points (n, 3) [m] in the machine's axes show them beside a blade; none of a section's.
-
-    Where the arrangement is not known both are tried, and that in which more points are on walls is taken.
-    """
+    """Hub and shroud beside a blade of points (n, 3) [m]; if no arrangement is known, in that of more such points."""
     if points.shape[1] == 2:
         return Walls(np.full(len(points), ""))
     kinds: tuple[Arrangement, ...] = ("annular", "linear") if arrangement is None else (arrangement,)

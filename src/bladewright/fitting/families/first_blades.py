@@ -79,10 +79,7 @@ in a band (design/matching_constants.md)"""
 def first_of_family(
     task: Task, begun: FirstBlade, kind: FitFamily, like: Any, header: DesignHeader
 ) -> tuple[float, Design, Match]:
-    """The turn of a frame about x [rad], and the family's first blade in it, from the sections of a closed unified one.
-
-    The short search that it was taken from comes with it. Raises the first refusal where no closed blade leads to one.
-    """
+    """The turn of a frame about x [rad], the family's first blade in it, from a closed one, and its short search."""
     task.progress("first design of the family")
     refusals = list[Exception]()
     for blade, count in closed_blades(task, begun):
@@ -123,10 +120,7 @@ def _with_smaller_radii(design: Design) -> Design:
 def _first(
     task: Task, closed: ModelShape, kind: FitFamily, like: Any, header: DesignHeader, count: int
 ) -> tuple[float, Design, Match]:
-    """The turn of a frame, the blade in it with a closed blade's sections, and its short search.
-
-    Its laws have `count` control points along the span.
-    """
+    """The turn of a frame, the blade in it with a closed blade's sections and laws of `count`, and its short search."""
     built = [closed.exact.section(float(v)) for v in SECTION_SPANS]
     found, middle = ClosedChannel(exact=closed.exact), section_shape(built[MIDDLE])
     found = replace(found, backwards=_backwards(found, kind, like, middle))
@@ -232,10 +226,9 @@ def _blade_of(
 
 
 def _backwards(found: ClosedChannel, kind: FitFamily, like: Any, section: SectionShape) -> bool:
-    """Whether the flow comes from the other side than the closed blade was found for.
+    """Whether the flow comes from the other side than the closed blade was found for: `like` shows it, points do not.
 
-    Points do not show it: `like` does. Without it wedges open downstream, other blades lead along x, and where they
-    stand radially the flow meets the rounder edge first.
+    Else wedges open downstream, other blades lead along x, and the flow meets the rounder edge of radial ones first.
     """
     first, last = (found.values(edge, HALF_SPAN)[0] for edge in EDGES)
     if like is not None and like.leading_edge is not None:
@@ -269,10 +262,7 @@ def _planes(task: Task, found: ClosedChannel, like: Any, middle: SectionShape) -
 
 
 def _along_span(shapes: Sequence[SectionShape], part: Any) -> list[Any]:
-    """Parts at places along the span: that of the middle, which was searched, changed as first parts of the shapes are.
-
-    Angles change by differences, lengths by ratios.
-    """
+    """Parts along the span: that of the middle, its angles changed by first parts' differences, lengths by ratios."""
     firsts = [first_part(part, shape).parameters() for shape in shapes]
 
     def changed(path: str, value: float, first: float, there: float) -> float:

@@ -271,10 +271,7 @@ def _(like: PointsProfile, shape: SectionShape) -> PointsProfile:
 
 
 def through_points(shape: SectionShape, count: int) -> PointsProfile:
-    """The contour through so many points of a section, from its trailing edge around the leading edge.
-
-    They are as dense as the outline turns, and as it is long, in equal parts. A blunt edge has a point on each corner.
-    """
+    """The contour through so many points of a section, as dense as it turns and as it is long; two at a blunt edge."""
     blunt = not np.allclose(shape.upper[-1], shape.lower[-1])
     around = np.concatenate([shape.upper[::-1], shape.lower[1:]])
     along = np.diff(around, axis=0)

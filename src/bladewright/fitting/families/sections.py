@@ -82,10 +82,7 @@ def matched_section(
 
 
 def nearest(task: Task, designs: Sequence[Design], target: MatchTarget, like: Any) -> tuple[Match, str]:
-    """The best of the matches that begin with several designs, and why it ends where no target is met.
-
-    One that can be built comes before one that cannot. Raises the last refusal where no design has a shape.
-    """
+    """The best of the matches that begin with several designs, one that can be built first, and why it ends."""
     found, built = list[tuple[Match, str]](), list[tuple[Match, str]]()
     refusal: Exception = FitError("no design of the family was tried")
     for design in designs:
@@ -141,10 +138,7 @@ def _has_misfit(match: Match) -> bool:
 
 
 def is_far(match: Match, target: MatchTarget, open_limit: float | None = None) -> bool:
-    """Whether a match is not what is asked for; `open_limit` is the largest distance where nothing is, of the chord.
-
-    Without it exact points are met more nearly than others.
-    """
+    """Whether a match is not what is asked for, or where nothing is, farther than a limit, of the chord, or trusted."""
     share = open_limit or (OUTLINE_DEVIATION if match.is_exact else NEAR_EVERYWHERE)
     limit = share * match.model.chord if target.tolerance is None else target.tolerance
     short = target.parameters is not None and len(match.problem.paths) < target.parameters
@@ -154,11 +148,7 @@ def is_far(match: Match, target: MatchTarget, open_limit: float | None = None) -
 def _through_points(
     task: Task, kind: FitFamily, tried: Sequence[Match], header: DesignHeader, target: MatchTarget, profile: Match
 ) -> tuple[Match | None, str]:
-    """The match by a contour through points, by as few as are asked for, and a note of it; None where there is none.
-
-    It begins as the nearest profiles of each kind of trailing edge, which the worst neighbourhood chooses: few points
-    show an edge.
-    """
+    """The match by a contour through as few points as are asked for, and a note of it; None where there is none."""
     some, found = inliers_of(task, profile, QUICK_POINTS), None
     profiles: list[Any] = [each.design for each in tried]
     edges = [each.section.outline(SINGLE_SECTION).trailing_edge.kind for each in profiles]
@@ -166,6 +156,7 @@ def _through_points(
     # one coordinate is free of each point but two, and four numbers place the section
     for count in OUTLINE_COUNTS if target.parameters is None else (target.parameters - 2,):
         fresh = {edge: _outlined(some, kind, each, count, header) for edge, each in starts.items()}
+        # few points show an edge
         best = min(filter(None, fresh.values()), key=_worst_neighbourhood, default=None)
         if best is None:
             continue
@@ -198,17 +189,14 @@ def _outlined(task: Task, kind: FitFamily, start: Match, count: int, header: Des
 def first_designs(
     kind: FitFamily, shape: SectionShape, like: Any, header: DesignHeader, task: Task
 ) -> Iterator[Design]:
-    """The designs that the kinds of a family begin as near a section, or those of the structure of a given part.
-
-    A blunt edge begins inside the points, by half its thickness, where its place is not known: one that stands out is
-    nearest to none, and stays.
-    """
+    """The designs that the kinds of a family begin as near a section, or those of the structure of a given part."""
     for part in kind.first_parts(shape, like):
         inside = shape
         # what has no outline is refused where it is searched
         with suppress(DesignError):
             outline = part.outline(SINGLE_SECTION)
             edges = zip((outline.leading_edge, outline.trailing_edge), shape.radii, strict=True)
+            # a blunt edge that stands out of the points is nearest to none, and stays
             inside = shape.within(*(radius * (edge.kind == "blunt") for edge, radius in edges))
         yield _design_of(kind, inside, part, header, task)
 

@@ -46,10 +46,7 @@ REDUCED = Segmented(nose=Nose(angle=0.0, radius=0.01), trailing_edge_thickness=0
 
 
 def contour_shape(points: Reals) -> SectionShape | None:
-    """The section of points (n, 2) that run once around it, as tables of airfoils do; None for others.
-
-    It is that of a spline through them, with the corners that they show at the trailing edge.
-    """
+    """The section of a spline through points (n, 2) that run once around it, as airfoil tables do; None for others."""
     way = float(np.sum(length(np.diff(points, axis=0, append=points[:1]))))
     # a convex contour is no longer than pi times its largest extent (Rosenthal and Szasz 1916), and points in another
     # order are joined by a much longer polygon

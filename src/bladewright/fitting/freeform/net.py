@@ -307,10 +307,7 @@ def matched_within(net: Net, points: Reals, request: Request, *, warm: bool) -> 
 
 
 def _finer(match: ShapeMatch[Net], limit: float) -> tuple[Net | None, str]:
-    """The net with a knot in the middle of each span that is too far off, or None and the reason where it is not noise.
-
-    Of a surface, along the direction of which each new control point is predicted to gain more.
-    """
+    """The net with a knot in each span too far off, of a surface where it gains more, or None and why, if not noise."""
     found: list[tuple[float, Net]] = []
     reason = ""
     square = match.distances**2

@@ -248,10 +248,7 @@ def matched(match: ShapeMatch[S], stiffness: float, end: tuple[int, float] = LAS
 
 
 def matched_by_stages(match: ShapeMatch[S], request: Request, *, warm: bool = False) -> ShapeMatch[S]:
-    """The match of a shape to points while it softens, then with free weights, then with another power.
-
-    A `warm` one is near already and is matched as soft as it ends.
-    """
+    """The match of a shape while it softens, unless it is near (`warm`), then with free weights, then another power."""
     stiffnesses = () if warm else STIFFNESSES
     if request.robust:
         request.report("without outliers")

@@ -115,10 +115,7 @@ def _row_spread(points: Reals, begun: FirstBlade) -> float:
 def likely_arrangements(
     points: Reals, arrangement: Arrangement | None
 ) -> Iterator[tuple[float, Arrangement, list[SlicedChannel]]]:
-    """The arrangements in which a blade may stand: how far its points are turned about x [rad], and likely channels.
-
-    First as is given, or seems so; what seems to stand around the axis may be of a cascade, with its span along y.
-    """
+    """The arrangements in which a blade may stand, the likelier first: a turn about x [rad], and likely channels."""
     seen, channels = arranged_channels(points, arrangement)
     yield 0.0, seen, channels
     # what cannot be sliced as a cascade is none
@@ -131,10 +128,7 @@ def likely_arrangements(
 def _searched_blade(
     points: Reals, channels: Sequence[SlicedChannel], header: dict[str, Any], turn: float
 ) -> tuple[float, FirstBlade]:
-    """The mean distance, in chords, of turned points (n, 3) [m] from the blade that a short search finds, and this.
-
-    It begins from the first of several channels from which there is one. Raises FitError where there is none.
-    """
+    """The mean distance, in chords, of points (n, 3) from the blade that a short search finds, and this blade."""
     points = points[even_subset(points, DRAWN_POINTS)]
     some = points[random_subset(len(points), SEARCHED_POINTS)]
     task = Task(points=some, weights=np.ones(len(some)), preliminary=True)
@@ -208,10 +202,7 @@ def arranged_channels(points: Reals, arrangement: Arrangement | None) -> tuple[A
 
 
 def spans_along_y(points: Reals) -> bool:
-    """Whether the span of a linear cascade's blade of points (n, 3) [m] is y, not z: slices across it meet them better.
-
-    A span along x needs no such question: the channel may lead along z.
-    """
+    """Whether the span of a linear cascade's blade (n, 3) [m] is y, not z: slices across it meet the points better."""
     some = without_isolated_points(np.unique(points, axis=0))
     some = some[even_subset(some, SPAN_POINTS)]
     off, off_turned = (

@@ -119,10 +119,7 @@ class FirstChannel:
 
 
 def channel_through(pieces: Mapping[str, Reals], counts: Mapping[str, int], *, revolved: bool) -> FirstChannel:
-    """The channel along four polylines by name, whose corners are the ends of leading and trailing edge.
-
-    Its curves have so many control points, or as many fewer as keep it from folding over.
-    """
+    """The channel along four polylines by name, of so many control points, or of fewer where it folds over."""
     ends = {edge: pieces[edge][[0, -1]] for edge in EDGES}
     ends |= {wall: np.stack([ends[edge][end] for edge in EDGES]) for end, wall in enumerate(("hub", "shroud"))}
     found: list[FirstChannel] = []
@@ -254,10 +251,7 @@ def pairings(machine: Reals, pieces: list[Reals], *, revolved: bool) -> tuple[in
 
 
 def _opening(machine: Reals, piece: Reals, *, revolved: bool) -> float | None:
-    """Root mean square tangential distance [m] of the points beside a piece of the outline from one surface.
-
-    None where too few points are beside it.
-    """
+    """Tangential distance rms [m] of points beside a piece of the outline from one surface; None where they are few."""
     way = cumulative_length(piece)
     t = np.linspace(0.0, 1.0, 400)
     line = np.stack([np.interp(t * way[-1], way, piece[:, i]) for i in (0, 1)], axis=-1)

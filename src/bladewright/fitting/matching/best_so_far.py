@@ -28,10 +28,7 @@ class BestSoFar:
     def built(
         self, least_tolerance: float = 0.0, suits: Callable[[Any], bool] = lambda _: True
     ) -> tuple[Any, Any] | None:
-        """The nearest match that suits and can be built, and what it builds; None where there is none.
-
-        Blades are built no finer than `least_tolerance`, of the chord.
-        """
+        """The nearest match that suits and can be built, no finer than a tolerance, and what it builds, or None."""
         suitable = filter(suits, chain.from_iterable(self.found.values()))
         for found in sorted(suitable, key=lambda each: each.mean_distance):
             tolerance = getattr(found.design, "tolerance", None)

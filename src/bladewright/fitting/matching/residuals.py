@@ -120,10 +120,7 @@ def _second_differences_of(line: Sequence[str]) -> Iterator[Row]:
 
 
 def _meridional_bends(start: Design) -> Iterator[Row]:
-    """Second differences of what points of curves change by: the curves bend themselves.
-
-    Of an edge the cloud hardly shows the points past hub and shroud.
-    """
+    """Second differences of what points of curves change by: the curves bend themselves."""
     values, lines = start.parameters(), dict[str, list[str]]()
     for path in values:
         found = POINT_PATH.fullmatch(path)

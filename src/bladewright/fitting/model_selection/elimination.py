@@ -226,10 +226,7 @@ PREDICTED, LARGEST_PREDICTED = 0.95, 1.5
 
 
 def eliminated(model: LinearModel, least: int, tolerance: float | None = None) -> list[Prediction]:
-    """Structures of fewer and fewer parameters, each without what is predicted to matter least of the one before.
-
-    With a tolerance, of the chord, points are weighed so that their largest distance becomes small.
-    """
+    """Structures of fewer and fewer parameters; with a tolerance, of the chord, points weigh by their distances."""
     found: list[Prediction] = []
     now = model.prediction(model.counts)
     while now is not None:

@@ -71,10 +71,7 @@ class RichMatch:
 def selected_match(
     task: Task, first: Design, target: MatchTarget, *, like: Structure | None, guessed: bool
 ) -> tuple[Match, str]:
-    """The match, and why it misses what is asked, a note, or an empty string.
-
-    `first` is a start, or a first guess where it is `guessed`; `like` is the structure of a given design.
-    """
+    """The match from a start or a guess, and why it misses what is asked; `like` is the structure of a given design."""
     return reduced_match(rich_match(task, first, target, like=like, guessed=guessed), target)
 
 

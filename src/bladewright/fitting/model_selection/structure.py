@@ -276,11 +276,7 @@ def _with_each(structure: Structure, laws: Iterable[ResizableLaw], count: Callab
 
 
 def richest(design: Design, *, sampled: bool = False) -> Structure:
-    """The structure with all the control points that a match may begin with.
-
-    Where it is to be `sampled`, it adds none along the chord that the design's samples do not determine
-    (design/matching.md).
-    """
+    """The structure with all the control points to begin with, but for those that samples leave open (`sampled`)."""
     own = structure_of(design)
 
     def rich(law: ResizableLaw, place: int, count: int) -> int:
@@ -301,10 +297,7 @@ THINNER_EDGES, MOST_THINNINGS = 0.7, 12
 
 
 def with_feasible_edges(design: Design) -> Design:
-    """The design, or one with thinner edges where given values leave it no shape; the last where none has.
-
-    A camber that is turned away from the points may leave the third control points of the sides outside the edges.
-    """
+    """The design, or with thinner edges where it has no shape: its third control points may lie outside the edges."""
     if not isinstance(design, UnifiedSection | UnifiedBlade):
         return design
     for _ in range(MOST_THINNINGS):
@@ -317,10 +310,7 @@ def with_feasible_edges(design: Design) -> Design:
 
 
 def widened_where_feasible(design: Design, structure: Structure) -> Design:
-    """The design of a wider structure, or where that has no shape, with those laws wider that leave it one.
-
-    The nearest laws of other control points may fold stream surfaces, or part an edge from a wall; each is tried alone.
-    """
+    """The design of a wider structure, or where that has no shape, with those laws wider that leave it one alone."""
     whole = with_feasible_edges(reshaped(design, structure))
     if _has_shape(whole):
         return whole

@@ -128,10 +128,7 @@ class StructureSearch:
         return target.tolerance is None or rich.maximum <= TO_SPARE * target.tolerance
 
     def _without_surplus(self, rich: Match, most: float = np.inf) -> Design:
-        """The design of the fewest control points that is predicted to leave hardly more than a rich match.
-
-        The rich one itself, where that is predicted to leave more than `most` rms, of the chord.
-        """
+        """The design of fewest control points predicted to be hardly worse, and within `most` rms; or the rich one."""
         candidates = eliminated(model := self._model(rich), 0)
         chosen = [each for each in candidates if each.rms <= min(NEAR_RICH * candidates[0].rms, most)]
         start = self._start(model, chosen[-1]) if chosen else None
