@@ -1,10 +1,11 @@
 """Edges around which a cloud has no points are said, and half a blade is known by them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from bladewright.fitting.assessment.coverage import (
-    ShapeBands,
     bare_places,
     bare_stretches,
     shape_bands,
@@ -146,10 +147,10 @@ def test_a_blade_that_is_measured_in_fewer_sections_than_its_laws_have_points_is
     free = free_parameters_of("stagger[*]", None, started=True)
     task = Task(points=points, weights=np.ones(len(points)), free=free, bounds={}).holding(held)
     found = searched(task, design, rounds=0)
-    bands = shape_bands(found)
-    assert bool(np.max(bands.half_widths) > 1e-3 * found.model.chord) is said
+    places, half_widths = shape_bands(found)
+    assert bool(np.max(half_widths) > 1e-3 * found.model.chord) is said
     # the rows themselves are known
-    assert np.max(bands.half_widths[(bands.v == 0.0) | (bands.v == 1.0)]) < 1e-3 * found.model.chord
+    assert np.max(half_widths[(places.v == 0.0) | (places.v == 1.0)]) < 1e-3 * found.model.chord
 
 
 def feet_of(u, v):
@@ -193,7 +194,7 @@ def test_an_end_without_points_on_a_part_of_the_chord_is_bare_there_alone():
     free = free_parameters_of("stagger", None, started=True)
     found = searched(Task(points=points, weights=np.ones(len(points)), free=free, bounds={}), design, rounds=0)
     side, u, v = np.array([0, 1, 0, 1, 0]), np.array([0.3, 0.3, 0.1, 0.9, 0.3]), np.array([0.0, 0.1, 0.01, 0.01, 0.5])
-    past = bare_places(found, ShapeBands(side=side, u=u, v=v, half_widths=np.zeros(5)), known=np.ones(5, dtype=bool))
+    past = bare_places(found, replace(feet_of(u, v), side=side), known=np.ones(5, dtype=bool))
     assert (past["hub"] | past["shroud"]).tolist() == [True, True, False, False, False]
 
 
@@ -205,5 +206,5 @@ def test_an_edge_without_points_on_a_part_of_the_span_is_bare_there_alone():
     free = free_parameters_of("stagger", None, started=True)
     found = searched(Task(points=points, weights=np.ones(len(points)), free=free, bounds={}), design, rounds=0)
     side, u, v = np.array([0, 1, 0, 1, 0]), np.array([0.0, 0.05, 0.0, 0.05, 0.5]), np.array([0.1, 0.1, 0.9, 0.9, 0.1])
-    past = bare_places(found, ShapeBands(side=side, u=u, v=v, half_widths=np.zeros(5)), known=np.ones(5, dtype=bool))
+    past = bare_places(found, replace(feet_of(u, v), side=side), known=np.ones(5, dtype=bool))
     assert (past["leading edge"] | past["trailing edge"]).tolist() == [True, True, True, False, False]

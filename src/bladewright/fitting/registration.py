@@ -117,7 +117,7 @@ def _samples(sides: Sequence[Side], dimension: int) -> Footpoints:
     along, across = GRID[dimension]
     u = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, along))) / 2.0
     u, v = (each.ravel() for each in np.meshgrid(u, np.linspace(0.0, 1.0, across), indexing="ij"))
-    every = [footpoints_at(np.zeros((len(u), dimension)), sides, np.full(len(u), k), u, v) for k in (0, 1)]
+    every = [footpoints_at(None, sides, k, u, v) for k in (0, 1)]
     return concatenated([each.part(even_subset(each.points, SAMPLES // 2)) for each in every])
 
 

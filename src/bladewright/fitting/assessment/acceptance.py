@@ -142,7 +142,7 @@ class Acceptance:
         return coverage.uncovered_edges(self.match)
 
     @cached_property
-    def _bands(self) -> coverage.ShapeBands:
+    def _bands(self) -> tuple[Footpoints, Reals]:
         return coverage.shape_bands(self.match)
 
     @property
@@ -233,25 +233,26 @@ class Acceptance:
     @cached_property
     def _limits(self) -> Reals:
         """How well the shape is to be known at places (n,) where nothing is asked [m]."""
-        return np.where(self._bands.at_edge, GROSS_DEVIATION[1], SHOWN_SIDE) * self.match.model.chord
+        at_edge = self._bands[0].from_edges < BETWEEN_EDGES
+        return np.where(at_edge, GROSS_DEVIATION[1], SHOWN_SIDE) * self.match.model.chord
 
     @cached_property
     def _bare(self) -> dict[str, NDArray[np.bool_]]:
         """Which places (n,) are at an edge or an end past all points there, while it is known elsewhere along it."""
-        known = self._bands.half_widths <= GROSS_DEVIATION[1] * self.match.model.chord
-        return coverage.bare_places(self.match, self._bands, known)
+        places, half_widths = self._bands
+        return coverage.bare_places(self.match, places, half_widths <= GROSS_DEVIATION[1] * self.match.model.chord)
 
     def _not_shown(self) -> Iterator[str]:
         """Where the shape is known less well than is trusted, and than one point there would show it."""
-        bands, chord = self._bands, self.match.model.chord
+        (places, half_widths), chord = self._bands, self.match.model.chord
         one_point = coverage.NORMAL_95 * self.match.noise_estimate.noise
         limits = np.where(np.any(list(self._bare.values()), axis=0), np.inf, np.maximum(self._limits, one_point))
-        worst = int(np.argmax(bands.half_widths / limits))
-        if bands.half_widths[worst] > limits[worst]:
-            along = f", v = {bands.v[worst]:.2g}" if self._in_space else ""
+        worst = int(np.argmax(half_widths / limits))
+        if half_widths[worst] > limits[worst]:
+            at = f"u = {places.u[worst]:.2g}" + (f", v = {places.v[worst]:.2g}" if self._in_space else "")
             yield (
-                f"the points do not show the {SIDES[bands.side[worst]]} side at u = {bands.u[worst]:.2g}{along}: it is "
-                f"known there to {self._length(bands.half_widths[worst])} either way (95 %), and "
+                f"the points do not show the {SIDES[places.side[worst]]} side at {at}: it is known there to "
+                f"{self._length(half_widths[worst])} either way (95 %), and "
                 f"{100 * limits[worst] / chord:.2g} % of the chord are allowed: is it a whole blade? Give more points "
                 "there, a start, a number of parameters or a tolerance"
             )
@@ -272,14 +273,14 @@ class Acceptance:
 
     def _bare_parts(self) -> Iterator[str]:
         """Edges and ends without points on a part of the blade, where they are known less well than is trusted."""
-        bands = self._bands
+        places, half_widths = self._bands
         for name, bare in self._bare.items():
-            rows = bare & (bands.half_widths > self._limits)
+            rows = bare & (half_widths > self._limits)
             if np.any(rows):
-                letter, along = ("v", bands.v[rows]) if name in EDGE_PARAMETERS else ("u", bands.u[rows])
+                letter, along = ("v", places.v[rows]) if name in EDGE_PARAMETERS else ("u", places.u[rows])
                 yield (
                     f"no point shows the {name} from {letter} = {min(along):.2g} to {max(along):.2g}: it is known "
-                    f"there to {self._length(np.max(bands.half_widths[rows]))} either way (95 %)"
+                    f"there to {self._length(np.max(half_widths[rows]))} either way (95 %)"
                 )
 
     def _long_gaps(self) -> Iterator[str]:
@@ -291,7 +292,7 @@ class Acceptance:
     def _partly_shown(self) -> Iterator[str]:
         """Why the points must be those of a part of a blade only, if anything shows it."""
         feet, thickness = self.match.state.footpoints, coverage.least_thickness(self.match)
-        between = feet.side[self.match.rows & (np.minimum(feet.u, 1.0 - feet.u) > BETWEEN_EDGES)]
+        between = feet.side[self.match.rows & (feet.from_edges > BETWEEN_EDGES)]
         shares = np.bincount(between, minlength=2) / max(len(between), 1)
         one_side = "is it one side of a blade alone? Give points of both"
         if len(between) and np.min(shares) < MIN_SIDE_SHARE:

@@ -1,7 +1,6 @@
 """What a cloud shows of a blade: its sides between the points, ends without a row, bare and cut edges."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,15 @@ from scipy.special import fdtri, ndtri
 from bladewright.fitting.assessment.estimates import shape_covariance
 from bladewright.fitting.free_parameters import parameters_of_curve
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS
-from bladewright.fitting.matching.footpoints import BETWEEN_EDGES, EDGE_PARAMETERS, Side, footpoints_at, part_of
+from bladewright.fitting.matching.footpoints import (
+    BETWEEN_EDGES,
+    EDGE_PARAMETERS,
+    Footpoints,
+    Side,
+    footpoints_at,
+    largest_thickness,
+    part_of,
+)
 from bladewright.fitting.matching.noise import EXACT, SIGNIFICANCE
 from bladewright.fitting.matching.search import Match
 from bladewright.numerics.elementary import cumulative_length
@@ -53,22 +60,6 @@ CONFIDENCE = 0.95
 """probability with which bands and ends are as near as is said (Neyman 1937)"""
 NORMAL_95 = float(ndtri((1.0 + CONFIDENCE) / 2.0))
 """standard deviations to either side within which 95 % of normal errors are"""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ShapeBands:
-    """How well the shape is known at n places all over a design."""
-
-    side: NDArray[np.intp]
-    u: Reals
-    v: Reals
-    half_widths: Reals
-    """(n,) half the 95 % intervals along the normals [m]"""
-
-    @property
-    def at_edge(self) -> NDArray[np.bool_]:
-        """(n,) whether a place is beside an edge, and not between them."""
-        return np.minimum(self.u, 1.0 - self.u) < BETWEEN_EDGES
 
 
 def loose_ends(match: Match) -> dict[str, float]:
@@ -126,7 +117,10 @@ def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:
         width = np.sqrt(np.sum((near_end - across) ** 2, axis=-1))
         if np.mean(np.sqrt(np.sum((near_end - tip) ** 2, axis=-1)) <= width) < COVERED_SHARE:
             wide = float(np.median(width))
-            uncovered[name] = wide, wide / _thickness(sides, float(np.median(v)))
+            uncovered[name] = (
+                wide,
+                wide / largest_thickness(sides, np.linspace(0.0, 1.0, THICKNESS_SAMPLES), float(np.median(v))),
+            )
     return uncovered
 
 
@@ -181,32 +175,31 @@ def _place_between(first: float, last: float, upper: Reals, lower: Reals) -> str
     return "{} side from u = {:.2f} to {:.2f}".format(name, *ends)
 
 
-def shape_bands(match: Match) -> ShapeBands:
-    """How well the shape is known, by the derivatives of places by its parameters, and these' covariance.
+def shape_bands(match: Match) -> tuple[Footpoints, Reals]:
+    """Places (n,) all over a design, and half the 95 % intervals along their normals [m], by parameters' covariance.
 
     Reference: Bates and Watts 1988, section 2.3.2 (inference bands for the expected response).
     """
-    dimension = match.problem.cloud_residuals.points.shape[1]
-    along, across = PLACES[dimension]
+    along, across = PLACES[match.problem.cloud_residuals.points.shape[1]]
     places = ((1.0 - np.cos(np.linspace(0.0, np.pi, count))) / 2.0 for count in (along, across))
     side, u, v = (each.ravel() for each in np.meshgrid([0, 1], *places, indexing="ij"))
-    at = footpoints_at(np.zeros((len(u), dimension)), match.state.shape.sides, side, u, v)
+    at = footpoints_at(None, match.state.shape.sides, side, u, v)
     paths, covariance = shape_covariance(match)
     slopes = match.model.along(match.state.shape, at, at.normals, paths)
     variances = np.einsum("nk,nk->n", slopes @ covariance, slopes)
-    return ShapeBands(side=side, u=u, v=v, half_widths=NORMAL_95 * np.sqrt(np.maximum(variances, 0.0)))
+    return at, NORMAL_95 * np.sqrt(np.maximum(variances, 0.0))
 
 
-def bare_places(match: Match, bands: ShapeBands, known: NDArray[np.bool_]) -> dict[str, NDArray[np.bool_]]:
+def bare_places(match: Match, places: Footpoints, known: NDArray[np.bool_]) -> dict[str, NDArray[np.bool_]]:
     """Which places (n,) at each edge and end are past all points of their side and part, where others are known."""
-    feet, found = match.state.footpoints, {}
-    borders = {name: (end, bands.at_edge, bands.u, bands.v, feet.u, feet.v) for name, end in EDGE_PARAMETERS.items()}
+    feet, at_edge, found = match.state.footpoints, places.from_edges < BETWEEN_EDGES, {}
+    borders = {name: (end, at_edge, places.u, places.v, feet.u, feet.v) for name, end in EDGE_PARAMETERS.items()}
     if match.state.shape.exact is not None:
-        borders |= {name: (end, known, bands.v, bands.u, feet.v, feet.u) for name, end in END_PARAMETERS.items()}
+        borders |= {name: (end, known, places.v, places.u, feet.v, feet.u) for name, end in END_PARAMETERS.items()}
     for name, (end, near, at, across, own, own_across) in borders.items():
         nearest, away = np.full(2 * PARTS, np.inf), np.abs(at - end)
         np.minimum.at(nearest, _part_of(feet.side, own_across), np.abs(own - end))
-        past = away < np.minimum(nearest[_part_of(bands.side, across)], 0.5)
+        past = away < np.minimum(nearest[_part_of(places.side, across)], 0.5)
         found[name] = past & near & np.any(known[away == 0.0])
     return found
 
@@ -224,16 +217,12 @@ def least_thickness(match: Match) -> float:
 
 
 def _thickness(sides: Sequence[Side], v: float) -> float:
-    u = np.linspace(0.0, 1.0, THICKNESS_SAMPLES)
-    upper, lower = (_places(sides, side, u, v) for side in (0, 1))
-    return float(np.sqrt(np.max(np.sum((upper - lower) ** 2, axis=-1))))
+    return largest_thickness(sides, np.linspace(0.0, 1.0, THICKNESS_SAMPLES), v)
 
 
 def _places(sides: Sequence[Side], side: ArrayLike, u: ArrayLike, v: ArrayLike) -> Reals:
     """Places (n, d) on the sides at parameters, each (n,) or one for all."""
-    side, u, v = (np.atleast_1d(each) for each in np.broadcast_arrays(side, u, v))
-    none = np.zeros((len(u), np.real(sides[0].control_points).shape[-1]))
-    return footpoints_at(none, sides, side, u, v).points
+    return footpoints_at(None, sides, side, u, v).points
 
 
 def foreign_edges(match: Match) -> dict[str, float]:
@@ -248,7 +237,7 @@ def foreign_edges(match: Match) -> dict[str, float]:
     points, feet = match.problem.cloud_residuals.points[match.rows], match.state.footpoints.part(match.rows)
     sides, found = match.state.shape.sides, {}
     for name, end in EDGE_PARAMETERS.items():
-        edge = footpoints_at(points, sides, np.zeros(len(points), dtype=np.intp), np.full(len(points), end), feet.v)
+        edge = footpoints_at(points, sides, 0, end, feet.v)
         inside = abs(end - INSIDE)
         across = _places(sides, 0, inside, feet.v) - _places(sides, 1, inside, feet.v)
         across -= np.sum(across * edge.normals, axis=-1)[:, None] * edge.normals

@@ -16,6 +16,7 @@ from bladewright.fitting.matching.footpoints import (
     Footpoints,
     Side,
     footpoints_at,
+    largest_thickness,
     part_of,
     unit_or_zero,
 )
@@ -146,7 +147,8 @@ def blade_ends_of(
         dense = np.count_nonzero(out) >= FACE_OUTLIERS and np.median(share[out]) < FACE_OUTLIERS_NEARER_WALL
         face = inside[(share < FACE_NEARER_WALL) & (rows[inside] | dense)]
         # beside an edge that is not yet found, points lie a little inside too
-        if np.max(-footpoints.heights[face], initial=0.0) > DEEPEST_FACE_POINT * _half_thickness(shape, end):
+        thickness = largest_thickness(shape.sides, np.linspace(0.1, 0.9, 9), end)
+        if np.max(-footpoints.heights[face], initial=0.0) > 0.5 * DEEPEST_FACE_POINT * thickness:
             on_end_face[face] = True
         chosen = np.flatnonzero(_outermost(footpoints, rows & ~on_end_face, end) | (on_end_face & beside_end))
         if len(chosen) < FEWEST_ROW_POINTS:
@@ -225,14 +227,6 @@ def _off_law(along: Reals, distances: Reals, inward: float, most: int) -> Reals:
     return np.abs(left)
 
 
-def _half_thickness(shape: ModelShape, end: float) -> float:
-    """Largest half distance [m] between the sides beside an end."""
-    u = np.linspace(0.1, 0.9, 9)
-    none, v = np.zeros((len(u), 3)), np.full(len(u), end)
-    upper, lower = (footpoints_at(none, shape.sides, np.full(len(u), side), u, v).points for side in (0, 1))
-    return 0.5 * float(np.sqrt(np.max(np.sum((upper - lower) ** 2, axis=-1))))
-
-
 STATIONS: Reals = np.concatenate([[0.0], np.linspace(1.0 / 32.0, 31.0 / 32.0, 16), [1.0]])
 """places along the span, v, at which each edge is looked at; more add rows that say the same."""
 COVERED_SPAN = 0.05
@@ -267,8 +261,7 @@ class EdgeOverhang:
 
     def edges(self, sides: Sequence[Side]) -> Footpoints:
         """The places on the edges beside the points, as footpoints with the held normals."""
-        found = footpoints_at(self.points, sides, np.zeros(len(self.u), dtype=np.intp), self.u, self.v)
-        return replace(found, normals=self.normals)
+        return replace(footpoints_at(self.points, sides, 0, self.u, self.v), normals=self.normals)
 
     def excess(self, edges: Footpoints) -> Reals:
         """By how much edges stand out further than allowed (m,) [m]; negative where they do not."""
@@ -287,10 +280,9 @@ def edge_overhang_of(
     upper, cloud = sides[0], points[rows]
     stations: Reals = STATIONS if isinstance(upper, Surface) else np.zeros(1)
     u, v = np.repeat([0.0, 1.0], len(stations)), np.tile(stations, 2)
-    edges = footpoints_at(np.zeros((len(u), points.shape[1])), sides, np.zeros(len(u), dtype=np.intp), u, v)
     cut = [end for name, end in EDGE_PARAMETERS.items() if name.replace(" ", "_") in cut_edges]
     chosen, shown = [], ~np.isin(u, cut)
-    for i, at in enumerate(edges.points):
+    for i, at in enumerate(footpoints_at(None, sides, 0, u, v).points):
         offset = cloud - at
         away = np.sum(offset**2, axis=-1)
         if isinstance(upper, Surface):
@@ -314,7 +306,7 @@ def outward_at_edges(sides: Sequence[Side], u: Reals, v: Reals) -> Reals:
     # normals are nearly opposite, and the sides run out
     out = np.zeros((len(u), np.real(sides[0].control_points).shape[-1]))
     for number, side in enumerate(sides):
-        at = footpoints_at(np.zeros_like(out), sides, np.full(len(u), number), u, v)
+        at = footpoints_at(None, sides, number, u, v)
         out += at.normals + np.where(u > 0.5, 1.0, -1.0)[:, None] * unit_or_zero(_slopes(side, u, v, 0))
     if isinstance(sides[0], Surface):
         # across the edge, as the points beside an oblique one may lie far along it

@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from bladewright.numerics.elementary import turned_left
 from bladewright.nurbs.basis import Reals, corners
@@ -54,6 +54,11 @@ class Footpoints:
     def heights(self) -> Reals:
         """(n,) signed distances along the normals."""
         return np.sum(self.miss * self.normals, axis=-1)
+
+    @property
+    def from_edges(self) -> Reals:
+        """(n,) distances from the nearer edge, in u."""
+        return np.minimum(self.u, 1.0 - self.u)
 
     def part(self, rows: NDArray[Any]) -> "Footpoints":
         """Some of them, by their numbers or as a mask (n,)."""
@@ -130,8 +135,13 @@ def _deep_inside(footpoints: Footpoints, points: Reals, sides: Sequence[Side]) -
     return rows[heights[rows] < -DEEP_SHARE * thickness]
 
 
-def footpoints_at(points: Reals, sides: Sequence[Side], side: NDArray[np.intp], u: Reals, v: Reals) -> Footpoints:
-    """Footpoints at known sides and parameters."""
+def footpoints_at(
+    points: Reals | None, sides: Sequence[Side], side: ArrayLike, u: ArrayLike, v: ArrayLike
+) -> Footpoints:
+    """Footpoints at known sides and parameters, each (n,) or one for all; without points the places are meant alone."""
+    side, u, v = (np.atleast_1d(each) for each in np.broadcast_arrays(side, u, v))
+    if points is None:
+        points = np.zeros((len(u), np.real(sides[0].control_points).shape[-1]))
     at, normals, beyond = np.empty_like(points), np.empty_like(points), np.zeros_like(points)
     for k, shape in enumerate(sides):
         rows = np.flatnonzero(side == k)
@@ -148,6 +158,12 @@ def footpoints_at(points: Reals, sides: Sequence[Side], side: NDArray[np.intp], 
         low, high = shape.domain_v
         beyond[rows] = out * ((v[rows] >= high).astype(float) - (v[rows] <= low))[:, None]
     return Footpoints(side=side, u=u, v=v, points=at, normals=normals, beyond=beyond, miss=points - at)
+
+
+def largest_thickness(sides: Sequence[Side], u: Reals, v: float) -> float:
+    """Largest distance [m] between the sides at places u (n,) along them."""
+    upper, lower = (footpoints_at(None, sides, side, u, v).points for side in (0, 1))
+    return float(np.sqrt(np.max(np.sum((upper - lower) ** 2, axis=-1))))
 
 
 def unit_or_zero(vectors: Reals) -> Reals:
