@@ -39,7 +39,7 @@ ROWS = {
     "clouds": ("ls89-suction", "ls89-outliers", "compressor-outliers"),
     "registration.py": ("aligned-fan", "aligned-turbine", "prism-aachen"),
     "placing.py": ("held-section",),
-    "models/sectioned.py": ("Aachen2D-suction-pressure",),
+    "models/designs.py": ("Aachen2D-suction-pressure",),
     "models/model.py": ("naca-blunt-exact-profile", "naca-blunt-noisy-profile"),
     "freeform": ("plain-curve", "plain-surface", "plain-profile"),
     "initial_guess": ("guess-Rotor67", "guess-compressor-stator", "guess-radial-stator"),

@@ -11,9 +11,8 @@ from bladewright.errors import DesignError
 from bladewright.fitting.clouds.cloud import checked_cloud
 from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footpoints
 from bladewright.fitting.matching.search import Task, searched
+from bladewright.fitting.models.designs import _flow_path_margins, _fold_margins
 from bladewright.fitting.models.model import model_of
-from bladewright.fitting.models.sectioned import _flow_path_margins
-from bladewright.fitting.models.unified import _fold_margins
 from machines import example
 from machines.sectioned import BLUNT
 

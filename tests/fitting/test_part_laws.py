@@ -26,7 +26,7 @@ from bladewright.fitting.model_selection.structure import (
     richest,
     structure_of,
 )
-from bladewright.fitting.models.sectioned import PlanarModel, infeasibility
+from bladewright.fitting.models.designs import PlanarModel, infeasibility
 from bladewright.section.camber_angle import CamberAngleSection
 from bladewright.section.laws import Span
 from bladewright.section.suction_pressure.part import SuctionPressureSection

@@ -34,8 +34,8 @@ from bladewright.fitting.matching.search import Match, Task, can_be_built, searc
 from bladewright.fitting.model_selection.selection import GUESS_NOISE, QUICK_POINTS, SEVERAL_POINTS
 from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.fitting.model_selection.structure_search import StructureSearch
+from bladewright.fitting.models.designs import infeasibility
 from bladewright.fitting.models.model import ModelShape, model_of
-from bladewright.fitting.models.sectioned import infeasibility
 from bladewright.numerics.elementary import turned_left, unit
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS

@@ -9,7 +9,7 @@ import numpy as np
 
 from bladewright.fitting.families.section_shape import PLACES, SectionShape
 from bladewright.fitting.matching.scales import part_range
-from bladewright.fitting.models.sectioned import SINGLE_SECTION
+from bladewright.fitting.models.designs import SINGLE_SECTION
 from bladewright.numerics.elementary import length
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber_angle import ANGLE, CamberAngle

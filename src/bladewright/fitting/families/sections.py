@@ -23,7 +23,7 @@ from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, ca
 from bladewright.fitting.model_selection.selection import QUICK_POINTS, determined, selected_match
 from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.fitting.model_selection.structure_search import NEAR
-from bladewright.fitting.models.sectioned import SINGLE_SECTION
+from bladewright.fitting.models.designs import SINGLE_SECTION
 from bladewright.section.checks import UNITS
 
 TRIAL_POINTS, TRIAL_ROUNDS = 400, 2

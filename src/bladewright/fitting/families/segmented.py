@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from bladewright.errors import DesignError
 from bladewright.fitting.families.first_parts import first_part
 from bladewright.fitting.families.section_shape import SectionShape
-from bladewright.fitting.models.sectioned import SINGLE_SECTION
+from bladewright.fitting.models.designs import SINGLE_SECTION
 from bladewright.numerics.elementary import cross2, cumulative_length, dot, length, turned_left, unit
 from bladewright.nurbs.basis import Reals, basis, greville
 from bladewright.section.profiles.points import PointsProfile

@@ -31,8 +31,8 @@ from bladewright.fitting.model_selection.laws import (
     SpanLaw,
     WallPoints,
 )
+from bladewright.fitting.models.designs import SINGLE_SECTION
 from bladewright.fitting.models.model import model_of
-from bladewright.fitting.models.sectioned import SINGLE_SECTION
 from bladewright.numerics.elementary import cumulative_length
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber_angle import CamberAngle
