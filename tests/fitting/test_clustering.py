@@ -41,7 +41,7 @@ def test_a_match_that_is_near_or_whose_misfit_is_of_another_kind_is_not_searched
 ) -> None:
     task = _task(STATOR)
     near = _first(task, STATOR)
-    turned = replace(task, free=lambda _: ("tangent_in",))
+    turned = replace(task, free=FreeParameters(free=("tangent_in",)))
     staggers = {path: 1.02 * value for path, value in STATOR.parameters().items() if path.startswith("stagger")}
     far = _first(turned, STATOR.changed(staggers))
     assert far.maximum > NEAR_EVERYWHERE * far.model.chord

@@ -29,7 +29,7 @@ from bladewright.fitting.families.blades import matched_blade
 from bladewright.fitting.families.kinds import FAMILIES, DesignHeader, FitFamily, family_of
 from bladewright.fitting.families.sections import matched_section
 from bladewright.fitting.families.unified import matched_unified
-from bladewright.fitting.free_parameters import FreeParameters, free_parameters_of
+from bladewright.fitting.free_parameters import free_parameters_of
 from bladewright.fitting.initial_guess.blade import UPRIGHT, spans_along_y
 from bladewright.fitting.matching.noise import EXACT
 from bladewright.fitting.matching.scales import given_bounds
@@ -263,8 +263,7 @@ def _matched(
     task, start = _searched_for(here.shown), here.start
     if kind is None:
         return matched_unified(task, start, like, header, target)
-    free = task.free
-    first = free.applied(start) if start is not None and isinstance(free, FreeParameters) else start
+    first = None if start is None else task.free.applied(start)
     matched = matched_section if task.dimension == 2 else matched_blade
     found, reason = matched(task, kind, first, like, header, target)
     try:

@@ -114,9 +114,13 @@ class FreeParameters:
     """whether hub and shroud of a blade from sections are free too"""
     unseen: frozenset[str] = frozenset()
     """edges and walls that are cut off or behind fillets: they are held"""
+    held: frozenset[str] = frozenset()
+    """parameters that a search holds besides, of the free ones"""
+    corners: bool = True
+    """whether the radii at which a blade's edges meet hub and shroud are free"""
 
     def __call__(self, design: Design) -> tuple[str, ...]:
-        """The free parameters of a design; raises FitError where there are none, or where no point shows one."""
+        """The free parameters of a design; raises FitError where nobody frees any, or where no point shows one."""
         paths = design.parameters()
         never = {path for path in paths if path.startswith(NOT_IN_CLOUD)}
         with refusing():
@@ -134,7 +138,8 @@ class FreeParameters:
         found = tuple(path for path in wanted if path not in held)
         if not found:
             raise FitError("no parameter is left to fit: free at least one, or fix fewer")
-        return found
+        besides = self.held if self.corners else self.held.union(corner_radii(design))
+        return tuple(path for path in found if path not in besides)
 
     def applied(self, design: Design) -> Design:
         """The design with the given values."""

@@ -12,7 +12,6 @@ from bladewright.fitting.families.first_parts import through_points
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
 from bladewright.fitting.families.section_shape import PLACES, SectionShape
 from bladewright.fitting.families.sections import PROMISING, criterion, inliers_of, is_far, misfits
-from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.blade import arranged_blades
 from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, can_be_built, searched
@@ -41,7 +40,7 @@ def matched_blade(
     the points.
     """
     own = start is None and like is None
-    if own and isinstance(task.free, FreeParameters):
+    if own:
         task = replace(task, free=replace(task.free, walls=True))
     tried, refusals, trials = list[tuple[Task, RichMatch]](), list[Exception](), list[Match]()
     # how near a number of parameters comes does not tell arrangements apart, a rich match does
@@ -79,7 +78,7 @@ def _rich(task: Task, first: Any, like: Any, target: MatchTarget, *, guessed: bo
     """The rich match that begins with a blade, or that of the structure of `like` if any."""
     structure = None if like is None else structure_of(like)
     first = first if structure is None else reshaped(first, structure)
-    first = task.free.applied(first) if isinstance(task.free, FreeParameters) else first
+    first = task.free.applied(first)
     check_bounds(first, task.free(first), task.bounds)
     return rich_match(task, first, target, like=structure, guessed=guessed)
 

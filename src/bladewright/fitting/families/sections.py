@@ -62,7 +62,7 @@ def matched_section(
     elif (contour := kind.contour_shape(task.points)) is not None:
         # a smooth contour through all points in order has no outliers, and shows both ends of its chord line
         shape, task = contour, replace(task, allow_outliers=False)
-        if isinstance(task.free, FreeParameters) and task.free.free is None:
+        if task.free.free is None:
             task = replace(task, free=replace(task.free, fixed=(*task.free.fixed, "chord", "leading_edge_x")))
     else:
         # its segments are laid on the section one by one, which must be as near as a match
@@ -213,7 +213,7 @@ def _design_of(kind: FitFamily, shape: SectionShape, part: Any, header: DesignHe
         leading_edge_y=float(shape.start[1]) / metre,
         section=part,
     )
-    return task.free.applied(design) if isinstance(task.free, FreeParameters) else design
+    return task.free.applied(design)
 
 
 def compared(task: Task, designs: Iterable[Design], *, rounds: int = TRIAL_ROUNDS) -> list[Match]:

@@ -111,7 +111,7 @@ def matched_unified(
     else:
         begun = first_blade(task.thinned(THOROUGH_POINTS).points, **header.known(like))
         guessed, task = begun.design, replace(task.turned(begun.turn), outline=begun.walls)
-    first = task.free.applied(guessed) if isinstance(task.free, FreeParameters) else guessed
+    first = task.free.applied(guessed)
     if start is None and first is not guessed:
         # held values may leave a guess no shape
         first = with_feasible_edges(first)
@@ -133,7 +133,7 @@ def _buildable(task: Task, match: Match, *, structured: bool) -> tuple[Match, An
     for margin_factor in (0.0, 1.0, 30.0, 1000.0):
         if margin_factor:
             # what a match holds stays held
-            fresh = replace(task, margin_factor=margin_factor, free=lambda _: paths)
+            fresh = replace(task, margin_factor=margin_factor, free=FreeParameters(free=paths))
             with suppress(FitError):
                 match = searched(fresh, match.design, rounds=2, min_reduction=FINAL_REDUCTION)
         try:

@@ -69,7 +69,7 @@ class Task:
     """(n, d) of the cloud [m]"""
     weights: Reals
     """(n,) of the points in the sum of squares, 1 on average"""
-    free: Callable[[Design], tuple[str, ...]] = field(default_factory=FreeParameters)
+    free: FreeParameters = field(default_factory=FreeParameters)
     """the free parameters of a design, whatever its structure"""
     bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """lowest and highest values by pattern, in the units of the fields"""
@@ -115,7 +115,7 @@ class Task:
 
     def without(self, paths: Collection[str]) -> "Task":
         """The same task with some parameters that do not change."""
-        return replace(self, free=lambda design: tuple(path for path in self.free(design) if path not in paths))
+        return replace(self, free=replace(self.free, held=self.free.held.union(paths)))
 
     def holding(self, held: Collection[str]) -> "Task":
         """The same task with some parameters held that the points do not determine."""

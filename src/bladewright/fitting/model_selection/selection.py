@@ -87,7 +87,7 @@ def rich_match(task: Task, first: Design, target: MatchTarget, *, like: Structur
         match = _of_structure(several, many, found, like if guessed else None)
         return RichMatch(match=match, first=found, search=None, many=many, note="")
     held = target.parameters is not None and bool(corner_radii(first)) and found.ends.in_rows(found.model.chord)
-    several, many = map(_with_corners_held, (several, many)) if held else (several, many)
+    several, many = (replace(each, free=replace(each.free, corners=not held)) for each in (several, many))
     search = StructureSearch(task=several, samples=(like or structure_of(first)).samples, first=found.design)
     if task.dimension == 3 and guessed:
         # laws that need no control points along the span begin as constants
@@ -180,8 +180,3 @@ def _of_structure(several: Task, many: Task, found: Match, structure: Structure 
     # what the points determine is not to be shifted
     weak = replace(many, regularisation_factor=WEAK_REGULARISATION * many.regularisation_factor)
     return searched(weak, found.design, rounds=QUICK_ROUNDS)
-
-
-def _with_corners_held(task: Task) -> Task:
-    """A task that holds the radii of the channel's corners."""
-    return replace(task, free=lambda design: tuple(p for p in task.free(design) if p not in corner_radii(design)))
