@@ -1,10 +1,12 @@
 """First sections from points in the plane."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from bladewright.fitting.families.kinds import DesignHeader
 from bladewright.fitting.families.unified import first_section
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Task, searched
@@ -14,6 +16,7 @@ from bladewright.fitting.model_selection.structure import Structure
 from bladewright.nurbs.closest import closest_on_curve
 from bladewright.section.unified import UnifiedSection
 
+HEADER = DesignHeader(name="blade", length_unit="mm")
 CLOUDS = Path(__file__).resolve().parents[3] / "shared" / "data" / "clouds"
 TRUTHS = {
     "turbine": UnifiedSection(
@@ -56,7 +59,7 @@ def test_a_first_section_lies_within_one_percent_of_the_chord_and_has_the_angles
 ) -> None:
     truth = TRUTHS[name]
     points = _cloud(truth, count)
-    found = first_section(points)
+    found = first_section(points, HEADER)
     assert _share(found, points[:200]) < 0.01
     # the ends of the camber lie somewhere on round edges: within a radius of each other
     assert found.stagger == pytest.approx(truth.stagger, abs=6.0)
@@ -70,13 +73,13 @@ def test_noise_outliers_and_duplicates_leave_a_first_section_close() -> None:
     chord = float(truth.build().chord)
     points = clean + 0.001 * chord * draw.normal(size=clean.shape)
     points[::20] += 0.15 * chord * draw.normal(size=points[::20].shape)
-    assert _share(first_section(np.concatenate([points, points[:100]])), clean) < 0.01
+    assert _share(first_section(np.concatenate([points, points[:100]]), HEADER), clean) < 0.01
 
 
 def test_a_first_section_has_the_structure_that_was_asked_for() -> None:
     counts = {"thickness_upper": (4, 1), "thickness_lower": (7, 1)}
     asked = Structure(counts=counts, samples=12, clustering=0.5)
-    found = first_section(_cloud(TRUTHS["turbine"], 300), structure=asked, length_unit="m")
+    found = first_section(_cloud(TRUTHS["turbine"], 300), replace(HEADER, length_unit="m"), asked)
     assert (len(found.thickness_upper), len(found.thickness_lower)) == (4, 7)
     assert (found.samples, found.clustering, found.length_unit) == (12, 0.5, "m")
 
@@ -87,7 +90,7 @@ def test_a_published_cloud_gives_a_first_section_within_a_fifth_of_a_percent(nam
     if not path.is_file():
         pytest.skip(f"{path} is not here")
     points = np.loadtxt(path)[:, 1:]
-    assert _share(first_section(points), points) < 0.002
+    assert _share(first_section(points, HEADER), points) < 0.002
 
 
 def test_a_section_in_another_minimum_is_met_from_usual_edges_where_it_is_not_trusted(

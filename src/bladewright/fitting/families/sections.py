@@ -57,7 +57,7 @@ def matched_section(
         found, reason = selected_match(task, start, target, like=None, guessed=False)
         return buildable_tolerance(found), reason
     if start is not None or kind.contour_shape is None:
-        closed = start or first_section(task.points, name=header.name, length_unit=header.length_unit)
+        closed = start or first_section(task.points, replace(header, pitch=None))
         shape = section_shape(closed.build())
     elif (contour := kind.contour_shape(task.points)) is not None:
         # a smooth contour through all points in order has no outliers, and shows both ends of its chord line

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from bladewright.blade.design.row_design import LengthUnit
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Design
 from bladewright.errors import BladewrightError, DesignError, FitError
@@ -40,23 +39,15 @@ NOISE, ROUNDS = 0.01, 5
 """noise assumed of a first section, of the chord, and rounds of its search (design/matching_constants.md)"""
 
 
-def first_section(
-    points: Reals,
-    *,
-    structure: Structure = FIRST_SECTION,
-    name: str = "blade",
-    length_unit: LengthUnit = "mm",
-    pitch: float | None = None,
-) -> UnifiedSection:
+def first_section(points: Reals, header: DesignHeader, structure: Structure = FIRST_SECTION) -> UnifiedSection:
     """A section of the unified family near points (n, 2) [m], x axial and y tangential, found from them alone.
 
-    The `pitch` [m], which they do not show, is stated in it. Raises FitError where no section that can be built lies
-    near the points.
+    Raises FitError where no section that can be built lies near the points.
     """
     points = without_isolated_points(np.unique(np.asarray(points, dtype=np.float64), axis=0))
     points = points[even_subset(points, DRAWN_POINTS)]
     start, extent = np.array([np.min(points[:, 0]), np.mean(points[:, 1])]), np.ptp(points[:, 0])
-    metre, longest = UNITS[length_unit], longest_chord(points)
+    metre, longest = UNITS[header.length_unit], longest_chord(points)
     plane = PlanePoints(points=(points - start) / extent, v=np.zeros(len(points)))
     task = Task(points=points, weights=np.ones(len(points)))
     best: Match | None = None
@@ -69,9 +60,9 @@ def first_section(
         size = float(slices.camber[0, 3, 0] - slices.camber[0, 0, 0])
         try:
             guess = UnifiedSection(
-                name=name,
-                length_unit=length_unit,
-                pitch=None if pitch is None else pitch / metre,
+                name=header.name,
+                length_unit=header.length_unit,
+                pitch=None if header.pitch is None else header.pitch / metre,
                 leading_edge_x=float(first[0]) / metre,
                 leading_edge_y=float(first[1]) / metre,
                 axial_chord=extent * size / metre,
@@ -104,10 +95,7 @@ def matched_unified(
     if start is not None:
         guessed = start if wanted is None else reshaped(start, wanted)
     elif task.dimension == 2:
-        points, structure = task.thinned(THOROUGH_POINTS).points, wanted or FIRST_SECTION
-        guessed = first_section(
-            points, structure=structure, name=header.name, length_unit=header.length_unit, pitch=header.pitch
-        )
+        guessed = first_section(task.thinned(THOROUGH_POINTS).points, header, wanted or FIRST_SECTION)
     else:
         begun = first_blade(task.thinned(THOROUGH_POINTS).points, **header.known(like))
         guessed, task = begun.design, replace(task.turned(begun.turn), outline=begun.walls)
