@@ -43,13 +43,11 @@ MOST_REALIGNMENTS = 4
 GAIN = 0.9
 """ratio of misfits after and before a realignment from which it is not worth a match (design/matching_constants.md)"""
 LONGEST_STEP = 0.2
-"""longest step of the motion, of the cloud's extent, in which residuals are nearly linear
-(design/matching_constants.md)"""
+"""longest step of the motion, of the cloud's extent: residuals are nearly linear (design/matching_constants.md)"""
 WEAKEST_SLOPE = 1e-10
 """singular value of the slopes, of the largest, below which it is rounding (design/matching_constants.md)"""
 ON_CUT = 1e-3
-"""distance from a cut, of the cloud's extent, within which points may lie on its face and are measured, not weighed
-(design/matching_constants.md)"""
+"""distance from a cut, of the cloud's extent, within which points may lie on its face (design/matching_constants.md)"""
 CUT_PLACES = {"hub": "hub", "tip": "shroud", **{edge: edge for edge in EDGES}}
 """the edge or wall in whose place a cut is"""
 

@@ -33,11 +33,9 @@ GRID = {2: (2000, 1), 3: (241, 61)}
 SAMPLES = 8000
 """evenly spread samples, as near to each other as true footpoints need to start (design/matching_constants.md)"""
 SEARCH_POINTS, DECIDING_POINTS = 300, 3000
-"""points of the cloud that choose among the starts, and those that the nearest is followed with; they bound the time
-(design/matching_constants.md)"""
+"""points that choose among starts, and that follow the nearest; they bound the time (design/matching_constants.md)"""
 FIRST_WIDTH, SHRINKING = 0.05, 4.0
-"""first width of the weights, of the blade's extent, and the factor by which it shrinks at most in a step
-(design/matching_constants.md)"""
+"""first width of weights, of the blade's extent; largest ratio of two in turn (design/matching_constants.md)"""
 LEAST_WIDTH, LAST_STEP = 1e-8, 1e-4
 """least width of the weights, to which footpoints are exact, of the blade's extent; and last step, of the width that
 the noise needs (design/matching_constants.md)"""
@@ -229,8 +227,7 @@ def composed(second: Motion, first: Motion) -> Motion:
 AXES_POINTS = 2000
 """points that are looked at; it bounds the time (design/matching_constants.md)."""
 PRISM_THICKNESS = 1e-3
-"""thickness of a projection, of the cloud's extent, below which the cloud is a prism: a few times a scan's noise
-(design/matching_constants.md)"""
+"""thickness of a prism's projection, of the extent: a few times a scan's noise (design/matching_constants.md)"""
 NORMAL_NEIGHBOURS, CURVE_NEIGHBOURS = 12, 60
 """nearest points that a plane is laid through, and a parabola of the section, on which many stand above each other
 (design/matching_constants.md)"""

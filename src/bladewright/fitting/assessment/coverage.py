@@ -38,8 +38,7 @@ BARE_SHARE, BARE_GAPS = 0.1, 5.0
 """gap between points around a section, of the chord, from which a blade is not shown there if it is so many usual ones
 (design/matching.md, design/matching_constants.md)"""
 FREE_GAP = 0.1
-"""share of such a gap within which no point of other parts of the span may lie beside its middle, as rows of points run
-across the blade's lines (design/matching.md)"""
+"""share of such a gap beside its middle without points: rows may run across the blade's lines (design/matching.md)"""
 AT_EDGE = 0.01
 """share of such a gap within which an edge is at its end (design/matching_constants.md)"""
 WAY_SAMPLES = 401

@@ -24,8 +24,7 @@ LAST_STEP = 1e-10
 """last step of the descents, in the parameters of a patch: points on a blade of 36 mm chord are then 1e-11 m off, and
 2e-10 m with the 1e-8 of other searches"""
 OFF_SIDES = 3.0
-"""standard deviations of the distances from which a point is off the sides, and may be on another face: the three sigma
-rule (Pukelsheim 1994)"""
+"""standard deviations from which a point is off the sides, maybe on another face: three sigma (Pukelsheim 1994)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -142,8 +142,7 @@ SUCTION_PRESSURE = SuctionPressure(
 )
 """the part whose structure is tried where none is given"""
 WEDGES = (25.0, 50.0, 75.0)
-"""wedge angles of the leading edge that are tried [deg]: the sides beside an edge may be taken for parts of it
-(design/matching_constants.md)"""
+"""wedge angles of the leading edge that are tried [deg], as sides may be taken for it (design/matching_constants.md)"""
 
 
 def suction_pressures(shape: SectionShape) -> Sequence[SuctionPressure]:

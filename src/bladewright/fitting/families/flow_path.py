@@ -21,8 +21,7 @@ from bladewright.nurbs.basis import Reals, basis, uniform_knots
 WALL_COUNTS = (3, 4, 5, 7, 9)
 """points on each wall beside the blade; the fewest are taken that are near enough (design/matching_constants.md)"""
 WALL_DISTANCE = 0.01
-"""distance from a wall that is near enough, of its length: by points alone it is known no better
-(design/matching_constants.md)"""
+"""distance from a wall that is near enough, of its length: points show it no better (design/matching_constants.md)"""
 WALL_MARGIN = 0.1
 """distance of the first and last of these points from the blade, of its length (design/matching_constants.md)"""
 CONTINUATIONS = (0.8, 0.4, 0.2)

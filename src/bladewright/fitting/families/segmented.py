@@ -25,11 +25,9 @@ from bladewright.section.segmented.skin import SEGMENTS
 PLACES: Reals = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 401))) / 2.0
 """s at which a side is sampled"""
 WINDOW = 0.05
-"""chord fraction to both sides of a cut, or of the leading edge, over which a cubic shows direction and curvature [-]
-(design/matching_constants.md)"""
+"""chord fraction beside a cut or the leading edge that shows direction and curvature (design/matching_constants.md)"""
 SCALES = (0.5, 1.0)
-"""scale factors with which a segment's search begins, as from one alone it may end at another minimum [-]
-(design/matching_constants.md)"""
+"""scale factors with which a segment's search begins: one alone may mislead it [-] (design/matching_constants.md)"""
 SAMPLES: Reals = np.linspace(0.0, 1.0, 33)[1:-1]
 """parameters at which a segment is compared with the section"""
 _JOINT = SegmentJoint(height=0.0, angle=0.0, curvature=0.0)

@@ -24,8 +24,7 @@ from bladewright.nurbs.basis import Reals
 STIFFNESSES = (1e-4, 1e-6, 1e-8, 1e-10)
 """weights of the bending, in extents of the points squared, in turn (design/freeform.md)"""
 LAST, ROUGH = (200, 1e-5), (20, 1e-3)
-"""evaluations at most and predicted relative reduction of the cost at which a descent ends: a last one, and one on the
-way (design/freeform.md)"""
+"""evaluations and predicted gain with which a descent ends: the last one, and others (design/freeform.md)"""
 OUTLYING_NOISE = 4.5
 """standard deviations of the noise from which a point is an outlier: 1 good one of 150,000 is (design/freeform.md)"""
 REWEIGHTINGS = 5

@@ -173,8 +173,7 @@ ANNULAR_AT_ONCE = 3e-3
 CLEARLY_LINEAR = 0.5
 """ratio of distances, linear to annular, below which a blade is of a cascade (design/matching_constants.md)"""
 ROW_BINS, ROW_HEIGHT = 16, 0.03
-"""parts of x in each of which the lowest point is sought, and height of a row above it, of the span
-(design/matching_constants.md)"""
+"""parts of x whose lowest point is sought, and height of a row above it, of the span (design/matching_constants.md)"""
 ROW_DEGREE, ROW_TURNS, ROW_OUTLIER = 5, 5, 6.7
 """degree of a row's line, iterations in which it is found, and distance from it, in medians, beyond which a point does
 not belong to the row (design/matching_constants.md)"""

@@ -29,8 +29,7 @@ from bladewright.nurbs.surface import Surface
 ROW_BAND = 0.015
 """distance from an end, in v, within which a point may belong to its row (design/matching_constants.md)"""
 ROW_PARTS, ROW_SHARE = 20, 0.5
-"""parts of the chord, and share of them that must show an end: a cloud of a part of the span does not
-(design/matching.md)"""
+"""parts of the chord, and share of them that must show an end: a part of the span does not (design/matching.md)"""
 FACE_BAND, FACE_DEPTH, FACE_NEARER_WALL = 0.1, 5.0, 0.3
 """of a point of an end face: largest distance from the end, in v, least depth, in usual distances from the sides, and
 largest distance from the wall or a row of outliers, of that depth (design/matching_constants.md)"""

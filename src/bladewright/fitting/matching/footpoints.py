@@ -21,8 +21,7 @@ DEEP_SHARE, DEEP_EXTENT = 0.25, 1e-5
 """depth of a point inside the blade, of the thickness there and of the cloud's extent, from which both sides are looked
 at again: beside a thin edge a descent may end on the wrong one (design/matching_constants.md)"""
 STANDING_OUT = 6.0
-"""distance of such a point, in usual ones, from which it may be called an outlier and is looked for globally
-(design/matching.md)"""
+"""distance of such a point, in usual ones, where it may be an outlier: it is sought globally (design/matching.md)"""
 FACING = 0.999
 """cosine of the angle from which a normal faces a point, as smooth sides' do (design/matching_constants.md)"""
 

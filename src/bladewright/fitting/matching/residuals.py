@@ -27,8 +27,7 @@ from bladewright.section.unified import UnifiedSection
 from bladewright.section.unified_limits import TANGENTS, THICKNESSES
 
 SPREAD_ABOUT_START = 3.0
-"""spread of a parameter about its start, in its own scale: it holds what nothing else does
-(design/matching_constants.md)"""
+"""spread of a parameter about its start, in its own scale: it holds what is left open (design/matching_constants.md)"""
 CHANNEL_SPREAD = 1.0
 """the same of points of meridional curves, which the cloud lets slide along these (design/matching_constants.md)"""
 CORNER_SPREAD = 0.25
@@ -47,8 +46,7 @@ straight cambers hardly show them (design/matching.md)"""
 EDGE_SHARE = 0.05
 """share of a cloud's points that show its edges: rows of edges count as much (design/matching_constants.md)"""
 USUAL_EDGE_HEIGHT = (0.8, 0.2)
-"""usual height of the control point that sets an edge's radius, of the thickness beside it, and its spread
-(design/matching_constants.md)"""
+"""usual height of the control point of an edge's radius, of the thickness; its spread (design/matching_constants.md)"""
 
 Row = tuple[list[tuple[str, float]], float, float]
 """paths of parameters and their factors, the usual value of their sum, and its spread in the scale of the parameters"""

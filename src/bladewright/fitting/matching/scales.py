@@ -46,8 +46,7 @@ SIZE_BY_NAME = {
 ON_BOUND = 1e-9
 """distance from a bound, of a parameter's scale, within which it is held by it (design/matching_constants.md)"""
 INSIDE = 1e-3
-"""how far inside its field's limits a parameter stays, of its size, as derivatives are taken at bounds
-(design/matching_constants.md)"""
+"""how far inside its field's limits a parameter stays, of its size, for derivatives (design/matching_constants.md)"""
 
 OPEN = -np.inf, np.inf
 """bounds that hold nothing"""

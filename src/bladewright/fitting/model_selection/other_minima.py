@@ -24,8 +24,7 @@ from bladewright.fitting.model_selection.structure import with_feasible_edges
 from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS
 
 SHARP_RADIUS = 5e-6
-"""radius of a sharp edge, of the axial chord: a wedge of 15 deg ends 3.3e-5 before its tip
-(design/matching_constants.md)"""
+"""radius of a sharp edge [axial chords]: a wedge of 15 deg ends 3.3e-5 before its tip (design/matching_constants.md)"""
 SHARPER_BY_CHANCE = 0.05
 """probability that a round edge leaves so much less than a sharp one by chance, where it is sharp (Wilks 1938)."""
 SHARP_NOTE = (

@@ -68,8 +68,7 @@ which structures are predicted for one aim at most (design/matching_constants.md
 SETTLED_RICH = 0.9
 """ratio of misfits above which a rich search has settled, and a richer structure gains nothing (design/matching.md)"""
 EXPLAINED = 0.25
-"""share of the misfit that a linear model of a rich structure leaves at most where its predictions are trusted before
-it is searched (design/matching.md)"""
+"""share of the misfit that a rich structure's linear model leaves at most where it is trusted (design/matching.md)"""
 RICHER_GAIN = 0.6
 """ratio of the misfits of two rich structures above which a richer one is of no use: a third as many control points
 again bring a cubic spline nearer by (3/4)^4, a third, half as many by a fifth (de Boor 1978, chapter 12)."""

@@ -208,8 +208,7 @@ def _opening_excess(part: SuctionPressure, edge: str, span: Span) -> Array:
 
 
 PLACES_ALONG_SPAN: Reals = np.linspace(0.0, 1.0, 65)
-"""places along the span at which edges' radii are compared with the thickness: five for each joint of the longest law
-(`MOST_SPAN` control points)"""
+"""places along the span where edge radii are compared with thickness: five a joint of the longest law"""
 COARSE_SEARCH, KNOT_SLACK = 3.0, 100.0
 """tolerance of a search, of the design's own, from which knots may miss walls and edges by so many times what `build`
 promises: it saves half of the derivatives' time (design/matching.md)"""
