@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import t as student
 
 from bladewright.fitting.assessment.estimates import independent_share, parameter_estimates
-from bladewright.fitting.matching.scales import Scales
+from bladewright.fitting.free_parameters import Scales
 
 POINTS, COUNT = 400, 5
 SIZE = np.array([5.0, 0.2, 1.0, 0.01, 3.0])

@@ -11,8 +11,7 @@ from bladewright.fitting.families import sections
 from bladewright.fitting.families.kinds import FAMILIES, family_of
 from bladewright.fitting.families.section_shape import section_shape
 from bladewright.fitting.fit import fit
-from bladewright.fitting.free_parameters import FreeParameters
-from bladewright.fitting.matching.scales import scales_of
+from bladewright.fitting.free_parameters import FreeParameters, scales_of
 from bladewright.fitting.models.model import model_of, sides_of
 from bladewright.section.camber_angle import CamberAngle, CamberAngleSection
 from machines.meanlines import BLUNT, on_meanline

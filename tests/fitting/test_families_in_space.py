@@ -20,10 +20,9 @@ from bladewright.fitting.families.kinds import FAMILIES, DesignHeader
 from bladewright.fitting.families.section_shape import section_shape, unrolled
 from bladewright.fitting.families.sections import misfits
 from bladewright.fitting.fit import fit
-from bladewright.fitting.free_parameters import FreeParameters, gauge_parameters, sliding_coordinate
+from bladewright.fitting.free_parameters import FreeParameters, gauge_parameters, scales_of, sliding_coordinate
 from bladewright.fitting.initial_guess.blade import UPRIGHT
 from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footpoints
-from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.matching.search import Task
 from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.fitting.models.model import FACE_SHARE, model_of, sides_of

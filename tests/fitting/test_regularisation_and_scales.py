@@ -8,6 +8,7 @@ import pytest
 import bladewright as bw
 from bladewright.designs import Point, limits_at
 from bladewright.files.examples import examples
+from bladewright.fitting.free_parameters import check_bounds, given_bounds, part_range, scales_of
 from bladewright.fitting.matching.residuals import (
     BEND_SPREAD,
     CAMBER_SPREAD,
@@ -17,7 +18,6 @@ from bladewright.fitting.matching.residuals import (
     USUAL_TANGENT,
     regularisation_of,
 )
-from bladewright.fitting.matching.scales import check_bounds, given_bounds, part_range, scales_of
 from bladewright.section.checks import UNITS
 from machines import example
 

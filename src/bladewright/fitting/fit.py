@@ -29,10 +29,9 @@ from bladewright.fitting.families.blades import matched_blade
 from bladewright.fitting.families.kinds import FAMILIES, DesignHeader, FitFamily, family_of
 from bladewright.fitting.families.sections import matched_section
 from bladewright.fitting.families.unified import matched_unified
-from bladewright.fitting.free_parameters import free_parameters_of
+from bladewright.fitting.free_parameters import free_parameters_of, given_bounds
 from bladewright.fitting.initial_guess.blade import UPRIGHT, spans_along_y
 from bladewright.fitting.matching.noise import EXACT
-from bladewright.fitting.matching.scales import given_bounds
 from bladewright.fitting.matching.search import Match, Progress, Task
 from bladewright.fitting.placing import (
     UPRIGHT_NOTE,

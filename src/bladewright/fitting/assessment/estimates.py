@@ -10,9 +10,9 @@ from scipy.spatial import cKDTree
 from scipy.special import stdtrit
 
 from bladewright.fitting.clouds.thinning import random_subset
+from bladewright.fitting.free_parameters import scales_of
 from bladewright.fitting.matching.noise import neighbourhood_of
 from bladewright.fitting.matching.residuals import regularisation_of
-from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.matching.search import Match
 from bladewright.nurbs.basis import Reals
 

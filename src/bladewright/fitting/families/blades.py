@@ -12,8 +12,8 @@ from bladewright.fitting.families.first_parts import through_points
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
 from bladewright.fitting.families.section_shape import PLACES, SectionShape
 from bladewright.fitting.families.sections import PROMISING, criterion, inliers_of, is_far, misfits
+from bladewright.fitting.free_parameters import check_bounds
 from bladewright.fitting.initial_guess.blade import arranged_blades
-from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, can_be_built, searched
 from bladewright.fitting.model_selection.selection import (
     SEVERAL_POINTS,

@@ -26,10 +26,9 @@ from bladewright.fitting.families.sections import (
     first_designs,
     misfits,
 )
-from bladewright.fitting.free_parameters import EDGES, FreeParameters
+from bladewright.fitting.free_parameters import EDGES, FreeParameters, part_range
 from bladewright.fitting.initial_guess.blade import FirstBlade
 from bladewright.fitting.matching.footpoints import nearest_footpoints
-from bladewright.fitting.matching.scales import part_range
 from bladewright.fitting.matching.search import Match, Task, can_be_built, searched
 from bladewright.fitting.model_selection.selection import GUESS_NOISE, QUICK_POINTS, SEVERAL_POINTS
 from bladewright.fitting.model_selection.structure import structure_of

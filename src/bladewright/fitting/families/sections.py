@@ -16,9 +16,8 @@ from bladewright.fitting.families.first_parts import through_points
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
 from bladewright.fitting.families.section_shape import SectionShape, section_shape
 from bladewright.fitting.families.unified import first_section, matched_unified
-from bladewright.fitting.free_parameters import FreeParameters
+from bladewright.fitting.free_parameters import FreeParameters, check_bounds
 from bladewright.fitting.matching.noise import OUTLYING_MISFIT
-from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, can_be_built, searched
 from bladewright.fitting.model_selection.selection import QUICK_POINTS, determined, selected_match
 from bladewright.fitting.model_selection.structure import structure_of

@@ -12,10 +12,9 @@ from bladewright.errors import BladewrightError, DesignError, FitError
 from bladewright.fitting.assessment.acceptance import AXES_HINT, MatchTarget
 from bladewright.fitting.clouds.thinning import even_subset, without_isolated_points
 from bladewright.fitting.families.kinds import DesignHeader
-from bladewright.fitting.free_parameters import FreeParameters
+from bladewright.fitting.free_parameters import FreeParameters, check_bounds
 from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.initial_guess.slices import STEEPEST, PlanePoints, longest_chord, slices_of, unified_numbers
-from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import Match, Task, searched
 from bladewright.fitting.model_selection.selection import FINAL_REDUCTION, THOROUGH_POINTS, selected_match
 from bladewright.fitting.model_selection.structure import (

@@ -15,10 +15,9 @@ import numpy as np
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Design, Law
 from bladewright.errors import DesignError
-from bladewright.fitting.free_parameters import EDGES
+from bladewright.fitting.free_parameters import EDGES, Scales
 from bladewright.fitting.matching.blade_ends import BladeEnds, EdgeOverhang, WallPoints
 from bladewright.fitting.matching.footpoints import Footpoints, concatenated, nearest_footpoints
-from bladewright.fitting.matching.scales import Scales
 from bladewright.fitting.models.model import Model, ModelShape
 from bladewright.numerics.least_squares import ConstrainedProblem
 from bladewright.nurbs.basis import Reals

@@ -16,13 +16,12 @@ from bladewright.designs import Design
 from bladewright.domain.row import turn_matrix
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.clouds.thinning import random_subset
-from bladewright.fitting.free_parameters import FreeParameters
+from bladewright.fitting.free_parameters import FreeParameters, scales_of
 from bladewright.fitting.matching.best_so_far import BestSoFar
 from bladewright.fitting.matching.blade_ends import BladeEnds, blade_ends_of, edge_overhang_of
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.noise import EXACT, NoiseEstimate, doubted_outliers, noise_of
 from bladewright.fitting.matching.residuals import CloudResiduals, MatchProblem, PlacedCloud, regularisation_of
-from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.models.model import Model, model_of
 from bladewright.numerics.least_squares import FIRST_DAMPING, MIN_REDUCTION, constrained_minimum
 from bladewright.nurbs.basis import Reals

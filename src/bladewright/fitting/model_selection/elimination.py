@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, block_diag, cho_factor, cho_solve
 
-from bladewright.fitting.matching.scales import scales_of
+from bladewright.fitting.free_parameters import scales_of
 from bladewright.fitting.matching.search import Match
 from bladewright.fitting.model_selection.laws import Counts, ResizableLaw
 from bladewright.fitting.model_selection.structure import Structure, reshaped, resizable_laws, structure_of

@@ -11,7 +11,7 @@ from scipy.interpolate import CubicSpline
 
 from bladewright.designs import Law, Point, Stations, value_at
 from bladewright.errors import DesignError
-from bladewright.fitting.matching.scales import scales_of
+from bladewright.fitting.free_parameters import scales_of
 from bladewright.fitting.models.designs import SINGLE_SECTION
 from bladewright.numerics.elementary import cumulative_length, length
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
