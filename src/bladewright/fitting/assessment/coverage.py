@@ -126,10 +126,8 @@ def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:
 def bare_stretches(match: Match) -> list[tuple[float, str]]:
     """The largest gap between points around the sections [m], and where, in each part of the span with a long one.
 
-    It is compared with the chord, and with the usual gap: half of a section's length lies in smaller ones, so that
-    neither few points nor rows of them seem to leave some out; and with points of other parts of the span, which rows
-    across the blade's lines have in it. A law of few control points goes on through a long gap as if it were known
-    there.
+    It is compared with the chord, with the usual gap, as half of a section's length lies in smaller ones, so that
+    neither few points nor rows seem to leave some out, and with points of other parts of the span that rows lead to.
     """
     feet, sides = match.state.footpoints.part(match.rows), match.state.shape.sides
     part, found = part_of(feet.v, PARTS), list[tuple[float, str]]()

@@ -36,8 +36,7 @@ def matched_blade(
 ) -> tuple[Match, str]:
     """The match of points (n, 3) by a blade of the family, and why it ends where no target is met.
 
-    `start` and `like` are blades of the family, or None. Raises FitError where no blade of the family has a shape near
-    the points.
+    `start` and `like` are blades of it, or None. Raises FitError where none has a shape near the points.
     """
     own = start is None and like is None
     if own:

@@ -301,10 +301,9 @@ def with_mean_laws(part: Any) -> Any:
 
 
 def part_of_laws(parts: Sequence[Any], count: int = LAW_COUNT) -> Any:
-    """One part of laws of so many control points from those of sections.
+    """One part of laws of so many control points from those of sections; FitError where even constants have no shape.
 
-    Laws are constants where one, alone or together with those before it, leaves sections no shape. Raises FitError
-    where even constants do.
+    Laws are constants where one, alone or together with those before it, leaves sections no shape.
     """
     paths = parts[MIDDLE].parameters()
     whole = _with_shape(parts, dict.fromkeys(paths, count))

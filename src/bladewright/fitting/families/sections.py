@@ -48,8 +48,7 @@ def matched_section(
 ) -> tuple[Match, str]:
     """The match of points (n, 2) by a section of the family, and why it ends where no target is met.
 
-    `start` and `like` are sections of the family, or None. Raises FitError where no structure of the family has a shape
-    near the points.
+    `start` and `like` are sections of it, or None. Raises FitError where no structure has a shape near the points.
     """
     if start is not None and like is None:
         check_bounds(start, task.free(start), task.bounds)

@@ -136,10 +136,9 @@ def _joined(like: AirfoilSide, line: Reals, cuts: Sequence[Any]) -> AirfoilSide:
 
 
 def _fitted(like: Segment, joints: tuple[JointVectors, JointVectors], line: Reals) -> Segment:
-    """The segment between two joints that is nearest to a line (n, 2) at `SAMPLES`, by least squares.
+    """The segment between two joints that is nearest to a line (n, 2), by least squares from several scale factors.
 
-    Its unknowns are both scale factors and the inner control points, which begin on the line and stay between the
-    joints. The best is taken of searches that begin with several scale factors.
+    Its unknowns are both scale factors and the inner control points, which begin on the line, between the joints.
     """
     count, scaled = len(like.abscissas), [joint.direction is not None for joint in joints]
     start, end = (np.real(each.point[0]) for each in joints)

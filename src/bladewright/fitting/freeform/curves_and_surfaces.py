@@ -109,9 +109,8 @@ def fit_curve(
 def sites_along(points: Reals, *, closed: bool) -> Reals:
     """Rough places (n,) in [0, 1] of points (n, d) along a curve, by the length of a path through them.
 
-    The path is the list of points where that is an order already. Otherwise it is the longest one in the minimum
-    spanning tree of the points, thinned to a grid: right where the curve keeps away from itself by more than its
-    points are apart. A closed curve is opened at the widest gap.
+    The path is the list itself if in order, or the longest in the minimum spanning tree, right where the curve keeps
+    away from itself by more than its points are apart. A closed curve is opened at the widest gap.
     """
     if _in_order(points):
         sites = cumulative_length(np.concatenate([points, points[:1]]) if closed else points)

@@ -80,10 +80,7 @@ class FreeformFit:
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """What is asked of a fit to points (n, d); raises FitError where it cannot be met.
-
-    Fits work in the unit of the points: about their mean, in their largest extent.
-    """
+    """What is asked of a fit to points (n, d), which works about their mean in their largest extent; or a refusal."""
 
     what: str
     """that is fitted, for messages"""

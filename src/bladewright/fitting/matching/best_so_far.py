@@ -40,10 +40,9 @@ class BestSoFar:
         return None
 
     def instead_of(self, refused: Any, error: Exception, *, structured: bool) -> tuple[Any, Any, str]:
-        """The same of the family of a match that cannot be built, and a note.
+        """The same of the family of a match that cannot be built, and a note; raises FitError where there is none.
 
-        It has as many parameters at most, and the same ones where the structure is given (`structured`). Raises
-        FitError where there is none.
+        It has as many parameters at most, and the same ones where the structure is given (`structured`).
         """
         paths = refused.problem.paths
 

@@ -191,8 +191,7 @@ def _walls_beside(beside: Sequence[Reals], exact: ExactBlade) -> Iterator[WallPo
 def _off_row(wall: WallPoints, exact: ExactBlade) -> Reals:
     """Distances (m,) [m] from the row in which most places stand, which may be off the wall by a smooth law.
 
-    Where that leaves a hundred times as much, by a law of the row's own off a straight line: a wall that is not found
-    yet may be no smooth one.
+    Where that leaves a hundred times as much, from a row of its own: a wall that is not found yet may be no smooth one.
     """
     t, normals, distances = wall.located(exact)
     inward = 1.0 if wall.name == "hub" else -1.0
