@@ -4,22 +4,14 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.special import fdtri, ndtri
 
 from bladewright.fitting.assessment.estimates import shape_covariance
 from bladewright.fitting.free_parameters import parameters_of_curve
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS
-from bladewright.fitting.matching.footpoints import (
-    BETWEEN_EDGES,
-    EDGE_PARAMETERS,
-    Footpoints,
-    Side,
-    footpoints_at,
-    largest_thickness,
-    part_of,
-)
+from bladewright.fitting.matching.footpoints import BETWEEN_EDGES, EDGE_PARAMETERS, Footpoints, footpoints_at, part_of
 from bladewright.fitting.matching.noise import EXACT, SIGNIFICANCE
 from bladewright.fitting.matching.search import Match
 from bladewright.numerics.elementary import cumulative_length
@@ -101,7 +93,7 @@ def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:
     """
     if not match.model.rounded:
         return {}
-    footpoints, sides = match.state.footpoints, match.state.shape.sides
+    footpoints, shape = match.state.footpoints, match.state.shape
     part = _part_of(footpoints.side, footpoints.v)
     uncovered = {}
     for name, end in EDGE_PARAMETERS.items():
@@ -112,14 +104,12 @@ def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:
         if len(nearest) == 0 or not match.problem.cloud_residuals.overhang.looks_at(end):
             continue
         side, u, v = footpoints.side[nearest], footpoints.u[nearest], footpoints.v[nearest]
-        near_end, tip, across = (_places(sides, *at) for at in ((side, u, v), (side, end, v), (1 - side, u, v)))
+        near_end, tip, across = (shape.places(*at) for at in ((side, u, v), (side, end, v), (1 - side, u, v)))
         width = np.sqrt(np.sum((near_end - across) ** 2, axis=-1))
         if np.mean(np.sqrt(np.sum((near_end - tip) ** 2, axis=-1)) <= width) < COVERED_SHARE:
             wide = float(np.median(width))
-            uncovered[name] = (
-                wide,
-                wide / largest_thickness(sides, np.linspace(0.0, 1.0, THICKNESS_SAMPLES), float(np.median(v))),
-            )
+            u = np.linspace(0.0, 1.0, THICKNESS_SAMPLES)
+            uncovered[name] = wide, wide / shape.thickness(u, float(np.median(v)))
     return uncovered
 
 
@@ -129,13 +119,13 @@ def bare_stretches(match: Match) -> list[tuple[float, str]]:
     It is compared with the chord, with the usual gap, as half of a section's length lies in smaller ones, so that
     neither few points nor rows seem to leave some out, and with points of other parts of the span that rows lead to.
     """
-    feet, sides = match.state.footpoints.part(match.rows), match.state.shape.sides
+    feet, shape = match.state.footpoints.part(match.rows), match.state.shape
     part, found = part_of(feet.v, PARTS), list[tuple[float, str]]()
     u = np.linspace(0.0, 1.0, WAY_SAMPLES)
     for number in np.unique(part):
         own = feet.part(part == number)
         v = float(np.mean(own.v))
-        upper, lower = (cumulative_length(_places(sides, side, u, v)) for side in (0, 1))
+        upper, lower = (cumulative_length(shape.places(side, u, v)) for side in (0, 1))
         whole = upper[-1] + lower[-1]
         ways = np.sort(np.where(own.side == 0, np.interp(own.u, u, upper), whole - np.interp(own.u, u, lower)))
         gaps = np.diff(ways, append=ways[0] + whole)
@@ -149,11 +139,11 @@ def bare_stretches(match: Match) -> list[tuple[float, str]]:
         side = int(middle > upper[-1])
         at = np.interp(whole - middle if side else middle, (upper, lower)[side], u)
         beside = feet.points if place in EDGE_PARAMETERS else feet.points[feet.side == side]
-        aside = beside - _places(sides, side, at, v)
+        aside = beside - shape.places(side, at, v)
         if np.min(np.sum(aside**2, axis=-1), initial=np.inf) < (FREE_GAP * (last - first)) ** 2:
             continue
         if place not in EDGE_PARAMETERS or match.problem.cloud_residuals.overhang.looks_at(EDGE_PARAMETERS[place]):
-            where = "" if sides[0].control_points.shape[-1] == 2 else f", v = {v:.2g}"
+            where = "" if feet.points.shape[1] == 2 else f", v = {v:.2g}"
             found.append((float(last - first), f"{place}{where}"))
     return found
 
@@ -210,16 +200,8 @@ def least_thickness(match: Match) -> float:
     """The least over the span of the sections' largest thickness [m]; infinite for families with other edges."""
     if not match.model.rounded:
         return np.inf
-    return min(_thickness(match.state.shape.sides, v) for v in (0.1, 0.3, 0.5, 0.7, 0.9))
-
-
-def _thickness(sides: Sequence[Side], v: float) -> float:
-    return largest_thickness(sides, np.linspace(0.0, 1.0, THICKNESS_SAMPLES), v)
-
-
-def _places(sides: Sequence[Side], side: ArrayLike, u: ArrayLike, v: ArrayLike) -> Reals:
-    """Places (n, d) on the sides at parameters, each (n,) or one for all."""
-    return footpoints_at(None, sides, side, u, v).points
+    u = np.linspace(0.0, 1.0, THICKNESS_SAMPLES)
+    return min(match.state.shape.thickness(u, v) for v in (0.1, 0.3, 0.5, 0.7, 0.9))
 
 
 def foreign_edges(match: Match) -> dict[str, float]:
@@ -232,11 +214,11 @@ def foreign_edges(match: Match) -> dict[str, float]:
     if not match.model.rounded:
         return {}
     points, feet = match.problem.cloud_residuals.points[match.rows], match.state.footpoints.part(match.rows)
-    sides, found = match.state.shape.sides, {}
+    shape, found = match.state.shape, {}
     for name, end in EDGE_PARAMETERS.items():
-        edge = footpoints_at(points, sides, 0, end, feet.v)
+        edge = footpoints_at(points, shape.sides, 0, end, feet.v)
         inside = abs(end - INSIDE)
-        across = _places(sides, 0, inside, feet.v) - _places(sides, 1, inside, feet.v)
+        across = shape.places(0, inside, feet.v) - shape.places(1, inside, feet.v)
         across -= np.sum(across * edge.normals, axis=-1)[:, None] * edge.normals
         wide = np.sqrt(np.sum(across**2, axis=-1))
         along, height = (np.sum(edge.miss * each, axis=-1) for each in (edge.normals, across / wide[:, None]))

@@ -16,7 +16,6 @@ from bladewright.fitting.matching.footpoints import (
     Footpoints,
     Side,
     footpoints_at,
-    largest_thickness,
     part_of,
     unit_or_zero,
 )
@@ -146,7 +145,7 @@ def blade_ends_of(
         dense = np.count_nonzero(out) >= FACE_OUTLIERS and np.median(share[out]) < FACE_OUTLIERS_NEARER_WALL
         face = inside[(share < FACE_NEARER_WALL) & (rows[inside] | dense)]
         # beside an edge that is not yet found, points lie a little inside too
-        thickness = largest_thickness(shape.sides, np.linspace(0.1, 0.9, 9), end)
+        thickness = shape.thickness(np.linspace(0.1, 0.9, 9), end)
         if np.max(-footpoints.heights[face], initial=0.0) > 0.5 * DEEPEST_FACE_POINT * thickness:
             on_end_face[face] = True
         chosen = np.flatnonzero(_outermost(footpoints, rows & ~on_end_face, end) | (on_end_face & beside_end))

@@ -159,12 +159,6 @@ def footpoints_at(
     return Footpoints(side=side, u=u, v=v, points=at, normals=normals, beyond=beyond, miss=points - at)
 
 
-def largest_thickness(sides: Sequence[Side], u: Reals, v: float) -> float:
-    """Largest distance [m] between the sides at places u (n,) along them."""
-    upper, lower = (footpoints_at(None, sides, side, u, v).points for side in (0, 1))
-    return float(np.sqrt(np.max(np.sum((upper - lower) ** 2, axis=-1))))
-
-
 def unit_or_zero(vectors: Reals) -> Reals:
     """Vectors (..., d) divided by their length; zero ones stay."""
     size = np.sqrt(np.sum(vectors**2, axis=-1, keepdims=True))

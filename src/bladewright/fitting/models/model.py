@@ -12,7 +12,7 @@ from functools import singledispatch
 from typing import Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.special import comb
 
 from bladewright.blade.native.blade import Blade
@@ -21,7 +21,7 @@ from bladewright.derivatives.complex_step import STEP, step_tangents, steps_of
 from bladewright.designs import Design
 from bladewright.errors import FitError
 from bladewright.fitting.free_parameters import EDGES
-from bladewright.fitting.matching.footpoints import Footpoints, Side
+from bladewright.fitting.matching.footpoints import Footpoints, Side, footpoints_at
 from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array, cross2
 from bladewright.nurbs.basis import Reals
@@ -60,6 +60,14 @@ class ModelShape:
     def finite(self) -> bool:
         """Whether the shape exists at all."""
         return all(bool(np.isfinite(side.homogeneous).all()) for side in self.sides)
+
+    def places(self, side: ArrayLike, u: ArrayLike, v: ArrayLike) -> Reals:
+        """Places (n, d) on the sides at parameters, each (n,) or one for all."""
+        return footpoints_at(None, self.sides, side, u, v).points
+
+    def thickness(self, u: Reals, v: float) -> float:
+        """Largest distance [m] between the sides at places u (n,) along them."""
+        return float(np.sqrt(np.max(np.sum((self.places(0, u, v) - self.places(1, u, v)) ** 2, axis=-1))))
 
 
 class Model(ABC):
