@@ -46,7 +46,7 @@ from bladewright.fitting.placing import (
     turned_with,
     without_finishing,
 )
-from bladewright.fitting.registration import axis_motion, composed, found_axes, registrations
+from bladewright.fitting.registration import axis_motion, found_axes, registrations
 from bladewright.numerics.single_thread import single_threaded
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import choice
@@ -194,7 +194,7 @@ def _ways_of(
     cascade = header.arrangement == "linear" and points.shape[1] == 3 and not given
     if cascade and spans_along_y(points if motion is None else motion(points)):
         turn = Motion(rotation=turn_matrix(UPRIGHT), translation=np.zeros(3))
-        return [(turn if motion is None else composed(turn, motion), (UPRIGHT_NOTE,))]
+        return [(turn.after(motion), (UPRIGHT_NOTE,))]
     return [(motion, ())]
 
 

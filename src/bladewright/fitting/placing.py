@@ -29,14 +29,7 @@ from bladewright.fitting.free_parameters import EDGES, WALLS, FreeParameters
 from bladewright.fitting.matching.noise import EXACT
 from bladewright.fitting.matching.search import QUICK_ROUNDS, ROUGH_REDUCTION, Match, Task, searched
 from bladewright.fitting.model_selection.selection import QUICK_POINTS
-from bladewright.fitting.registration import (
-    OTHER_BLADE_NOTE,
-    WEAKEST_FREEDOM,
-    composed,
-    motion_by,
-    motion_rates,
-    motion_scale,
-)
+from bladewright.fitting.registration import OTHER_BLADE_NOTE, WEAKEST_FREEDOM, motion_by, motion_rates, motion_scale
 
 MOST_REALIGNMENTS = 4
 """realignments at most: a match follows each, and they bound the time to five matches (design/matching_constants.md)"""
@@ -114,7 +107,7 @@ def turned_with(here: PlacedTask, match: Match) -> PlacedTask:
     linear = getattr(match.design, "arrangement", None) == "linear"
     return replace(
         here,
-        motion=step if here.motion is None else composed(step, here.motion),
+        motion=step.after(here.motion),
         notes=(*here.notes, UPRIGHT_NOTE if linear else TURNED_NOTE.format(np.degrees(match.turn))),
         every=here.every.turned(match.turn),
     )
@@ -176,7 +169,7 @@ def realigned(turns: list[PlacedTask], found: Matched, place: Place, match: Call
         here.every.progress("axes")
         notes = tuple(each for each in here.notes if not each.startswith(OTHER_BLADE_NOTE))
         try:
-            there = place(composed(step, here.motion), before.design, notes)
+            there = place(step.after(here.motion), before.design, notes)
             turns.append(there)
             nearer = match(there)
         except (DesignError, FitError):

@@ -103,7 +103,7 @@ def _followed(points: Reals, motion: Motion, touching: Callable[[Reals], Contact
         moved = motion(points)
         contact = touching(moved)
         needed = max(_noise_width(contact), LEAST_WIDTH * extent)
-        motion = composed(_step(moved, contact, width, extent), motion)
+        motion = _step(moved, contact, width, extent).after(motion)
         if width <= needed and np.max(np.abs(motion(points) - moved)) < LAST_STEP * needed:
             break
         width = max(needed, width / SHRINKING)
@@ -147,7 +147,7 @@ def _rough(points: Reals, samples: Footpoints, tree: cKDTree, motion: Motion, ex
         weakest = spacing / extent if planes else WEAKEST_FREEDOM
         for _ in range(steps):
             moved = motion(points)
-            motion = composed(_step(moved, contact(moved, planes=planes), 0.0, extent, weakest), motion)
+            motion = _step(moved, contact(moved, planes=planes), 0.0, extent, weakest).after(motion)
     miss, _, directions = contact(motion(points), planes=True)
     distances = length(miss)
     # between samples only the distance from the tangent plane says how far a point is off
@@ -217,11 +217,6 @@ def motion_by(change: Reals, pivot: Reals) -> Motion:
 def motion_scale(dimension: int, extent: float) -> Reals:
     """Scales (k,) of the degrees of freedom by which all are lengths."""
     return np.concatenate([np.full(len(TURN_AXES[dimension]), 1.0 / extent), np.ones(dimension)])
-
-
-def composed(second: Motion, first: Motion) -> Motion:
-    """The motion that does `first`, then `second`."""
-    return Motion(rotation=second.rotation @ first.rotation, translation=second(first.translation))
 
 
 AXES_POINTS = 2000

@@ -44,6 +44,12 @@ class Motion:
         """Moved points (..., d)."""
         return points @ self.rotation.T + self.translation
 
+    def after(self, first: Motion | None) -> Motion:
+        """The motion that does `first`, if any, then this one."""
+        if first is None:
+            return self
+        return Motion(rotation=self.rotation @ first.rotation, translation=self(first.translation))
+
 
 @dataclass(frozen=True, kw_only=True)
 class Deviation:
