@@ -136,11 +136,10 @@ def test_a_match_is_sought_again_where_it_is_clearly_further_off_than_the_rich_o
     largest = {"rich": rich, "found": found, "nearer": 0.9 * found}
     of = {
         name: SimpleNamespace(
-            maximum=distance, model=SimpleNamespace(chord=1.0), design=None, has_systematic_misfit=True
+            maximum=distance, model=SimpleNamespace(chord=1.0), can_be_built=True, has_systematic_misfit=True
         )
         for name, distance in largest.items()
     }
-    monkeypatch.setattr(structure_search, "can_be_built", lambda _: True)
     monkeypatch.setattr(StructureSearch, "well_predicted", lambda *_: of["found"])
     monkeypatch.setattr(StructureSearch, "within", lambda *_: (of["nearer"], ""))
     search = StructureSearch(task=None, samples=0, first=None)

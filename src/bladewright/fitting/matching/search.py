@@ -199,9 +199,14 @@ class Match:
         """Whether neighbouring points tell that the cloud has next to no noise."""
         return self.noise_estimate.noise < EXACT_NOISE * self.model.chord
 
+    @property
+    def can_be_built(self) -> bool:
+        """Whether `build` takes the design; it may not, though a search does: edge radii need a larger margin."""
+        return can_be_built(self.design)
+
 
 def can_be_built(design: Any) -> bool:
-    """Whether `build` does not refuse a design; it may, though searches allow it: edge radii need a larger margin."""
+    """Whether `build` does not refuse a design."""
     try:
         design.build()
     except DesignError:

@@ -16,7 +16,6 @@ from bladewright.fitting.matching.search import (
     ROUGH_REDUCTION,
     Match,
     Task,
-    can_be_built,
     evaluated,
     searched,
     without_false_outliers,
@@ -139,7 +138,7 @@ def _searched_further(task: Task, match: Match) -> Match:
     try:
         found = searched(task, match.design, noise=match.rms, min_reduction=FINAL_REDUCTION)
         near = max(trusted_distance(match), NEAR_RICH * match.maximum)
-        if found.maximum > near or (not can_be_built(found.design) and can_be_built(match.design)):
+        if found.maximum > near or (not found.can_be_built and match.can_be_built):
             found = evaluated(task, match.design, noise=match.rms)
     except FitError:
         return match

@@ -17,15 +17,7 @@ from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, MatchTarget, trusted_distance
 from bladewright.fitting.matching.footpoints import Footpoints, part_of
 from bladewright.fitting.matching.noise import EXACT
-from bladewright.fitting.matching.search import (
-    QUICK_ROUNDS,
-    ROUGH_REDUCTION,
-    Match,
-    Task,
-    can_be_built,
-    evaluated,
-    searched,
-)
+from bladewright.fitting.matching.search import QUICK_ROUNDS, ROUGH_REDUCTION, Match, Task, evaluated, searched
 from bladewright.fitting.model_selection.elimination import (
     LARGEST_PREDICTED,
     PREDICTED,
@@ -148,7 +140,7 @@ class StructureSearch:
 
     def _built(self, match: Match) -> Match | None:
         """A match that can be built: where it is refused, one whose edge radii are kept further from what is."""
-        if can_be_built(match.design):
+        if match.can_be_built:
             return match
         roots = match.problem.cloud_residuals.roots
         weights = np.where(roots > 0.0, roots**2, self.task.weights)
@@ -157,7 +149,7 @@ class StructureSearch:
             found = searched(task, match.design, noise=match.rms, rounds=1, min_reduction=ROUGH_REDUCTION)
         except FitError:
             return None
-        return found if can_be_built(found.design) else None
+        return found if found.can_be_built else None
 
     def well_predicted(self, rich: Match) -> Match:
         """The match of fewest parameters that is at the cloud's noise, or where its misfit is none, near everywhere."""
@@ -200,7 +192,7 @@ class StructureSearch:
         if not found.has_systematic_misfit or found.maximum <= enough or rich.maximum > limit:
             return found
         nearer, _ = self.within(rich, limit)
-        return nearer if nearer.maximum < found.maximum and can_be_built(nearer.design) else found
+        return nearer if nearer.maximum < found.maximum and nearer.can_be_built else found
 
     def within(self, rich: Match, tolerance: float) -> tuple[Match, str]:
         """The match of fewest parameters found that keeps a tolerance [m]; the nearest, and why, where none does."""
@@ -216,7 +208,7 @@ class StructureSearch:
         def kept(match: Match) -> bool:
             return match.maximum <= tolerance
 
-        found, nearest = rich if kept(rich) and can_be_built(rich.design) else None, None
+        found, nearest = rich if kept(rich) and rich.can_be_built else None, None
         if kept(rich) or rich.has_systematic_misfit:
             found, nearest = self._fewest(
                 rich, found, rounds=1, predicted=predicted, search=reweighted_search, kept=kept
