@@ -47,7 +47,7 @@ ROWS = {
     "families": ("Aachen2D-suction-pressure", "naca-sharp-noisy-profile"),
     "families/segmented.py": ("example-morphing-airfoil",),
     "families/unified.py": (*SECTIONS, *BLADES),
-    "families/flow_path.py": ("twisted-blunt-noisy-profile",),
+    "families/closed_blade.py": ("twisted-blunt-noisy-profile",),
     "families/blades.py": ("twisted-blunt-noisy-profile",),
     "families/first_blades.py": ("twisted-blunt-noisy-profile",),
     "families/sections.py": ("example-compressor-stator", "Aachen2D-suction-pressure"),

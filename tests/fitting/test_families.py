@@ -8,8 +8,8 @@ import pytest
 
 from bladewright.errors import FitError
 from bladewright.fitting.families import sections
+from bladewright.fitting.families.closed_blade import section_shape
 from bladewright.fitting.families.kinds import FAMILIES, family_of
-from bladewright.fitting.families.section_shape import section_shape
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import FreeParameters, scales_of
 from bladewright.fitting.models.model import model_of, sides_of

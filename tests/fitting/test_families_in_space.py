@@ -13,11 +13,10 @@ from bladewright.fitting import free_parameters
 from bladewright.fitting.assessment.acceptance import MatchTarget
 from bladewright.fitting.families import blades, first_blades
 from bladewright.fitting.families.blades import matched_blade
+from bladewright.fitting.families.closed_blade import CONTINUATIONS, ClosedChannel, section_shape, unrolled
 from bladewright.fitting.families.first_blades import LAW_COUNT, part_along_span, part_of_laws, with_mean_laws
 from bladewright.fitting.families.first_parts import through_points
-from bladewright.fitting.families.flow_path import CONTINUATIONS, ClosedChannel
 from bladewright.fitting.families.kinds import FAMILIES, DesignHeader
-from bladewright.fitting.families.section_shape import section_shape, unrolled
 from bladewright.fitting.families.sections import misfits
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import FreeParameters, gauge_parameters, scales_of, sliding_coordinate

@@ -8,8 +8,7 @@ from scipy.spatial import cKDTree
 
 from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.designs import Point
-from bladewright.fitting.families.first_blades import part_of_laws
-from bladewright.fitting.families.flow_path import (
+from bladewright.fitting.families.closed_blade import (
     CONTINUATIONS,
     WALL_COUNTS,
     WALL_DISTANCE,
@@ -17,6 +16,7 @@ from bladewright.fitting.families.flow_path import (
     _outward,
     _wall,
 )
+from bladewright.fitting.families.first_blades import part_of_laws
 from bladewright.fitting.free_parameters import FreeParameters, gauge_parameters
 from bladewright.fitting.matching.blade_ends import WallPoints
 from bladewright.fitting.matching.footpoints import nearest_footpoints

@@ -11,9 +11,9 @@ from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.designs import Point
 from bladewright.errors import DesignError
 from bladewright.fitting.assessment.acceptance import MatchTarget
+from bladewright.fitting.families.closed_blade import section_shape
 from bladewright.fitting.families.first_parts import through_points
 from bladewright.fitting.families.kinds import FAMILIES, DesignHeader
-from bladewright.fitting.families.section_shape import section_shape
 from bladewright.fitting.families.sections import _through_points, criterion, first_designs
 from bladewright.fitting.free_parameters import EDGES, FreeParameters
 from bladewright.fitting.matching.search import Task, searched

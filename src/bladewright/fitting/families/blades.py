@@ -7,10 +7,10 @@ import numpy as np
 
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, SHARED_VARIANCE, MatchTarget
+from bladewright.fitting.families.closed_blade import PLACES, SectionShape
 from bladewright.fitting.families.first_blades import SECTION_SPANS, first_of_family, part_of_laws
 from bladewright.fitting.families.first_parts import through_points
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
-from bladewright.fitting.families.section_shape import PLACES, SectionShape
 from bladewright.fitting.families.sections import PROMISING, criterion, inliers_of, is_far, misfits
 from bladewright.fitting.free_parameters import check_bounds
 from bladewright.fitting.initial_guess.blade import arranged_blades

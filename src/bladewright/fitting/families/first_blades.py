@@ -14,10 +14,9 @@ import numpy as np
 from bladewright.designs import Design, Law, unit_at
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, MatchTarget
+from bladewright.fitting.families.closed_blade import ClosedChannel, SectionShape, section_shape, unrolled
 from bladewright.fitting.families.first_parts import first_part
-from bladewright.fitting.families.flow_path import ClosedChannel
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
-from bladewright.fitting.families.section_shape import SectionShape, section_shape, unrolled
 from bladewright.fitting.families.sections import (
     CONSIDERED,
     TRIAL_POINTS,

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from bladewright.fitting.families.section_shape import PLACES, SectionShape
+from bladewright.fitting.families.closed_blade import PLACES, SectionShape
 from bladewright.fitting.free_parameters import part_range
 from bladewright.fitting.models.designs import SINGLE_SECTION
 from bladewright.numerics.elementary import length

@@ -12,6 +12,7 @@ from bladewright.designs import Design
 from bladewright.errors import FitError
 from bladewright.fitting.checks import check_positive, refusing
 from bladewright.fitting.families import segmented
+from bladewright.fitting.families.closed_blade import SectionShape
 from bladewright.fitting.families.first_parts import (
     CAMBER_ANGLES,
     CURVATURE_MEANLINES,
@@ -20,7 +21,6 @@ from bladewright.fitting.families.first_parts import (
     first_part,
     suction_pressures,
 )
-from bladewright.fitting.families.section_shape import SectionShape
 from bladewright.nurbs.basis import Reals
 from bladewright.section import checks
 from bladewright.section.camber_angle import CamberAngleSection

@@ -12,9 +12,9 @@ from scipy.special import chdtri
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, MatchTarget, trusted_distance
+from bladewright.fitting.families.closed_blade import SectionShape, section_shape
 from bladewright.fitting.families.first_parts import through_points
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
-from bladewright.fitting.families.section_shape import SectionShape, section_shape
 from bladewright.fitting.families.unified import first_section, matched_unified
 from bladewright.fitting.free_parameters import FreeParameters, check_bounds
 from bladewright.fitting.matching.noise import OUTLYING_MISFIT

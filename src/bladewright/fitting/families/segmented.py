@@ -11,8 +11,8 @@ from scipy.optimize import least_squares
 from scipy.spatial import cKDTree
 
 from bladewright.errors import DesignError
+from bladewright.fitting.families.closed_blade import SectionShape
 from bladewright.fitting.families.first_parts import first_part
-from bladewright.fitting.families.section_shape import SectionShape
 from bladewright.fitting.models.designs import SINGLE_SECTION
 from bladewright.numerics.elementary import cross2, cumulative_length, dot, length, turned_left, unit
 from bladewright.nurbs.basis import Reals, basis, greville
