@@ -14,6 +14,7 @@ from bladewright.fitting.families.first_blades import (
     part_of_laws,
     with_mean_laws,
 )
+from bladewright.fitting.families.kinds import DesignHeader
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.matching.footpoints import nearest_footpoints
@@ -47,7 +48,7 @@ def test_a_blade_that_changes_much_along_its_span_begins_as_a_rich_closed_one() 
     built = blade.build()
     points = np.concatenate([side(*draw.random((2, 1500))) for side in sides_of(built)])
     task = Task(points=points, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
-    begun = first_blade(points)
+    begun = first_blade(points, DesignHeader(name="blade", length_unit="mm").known())
     (closed, count), *others = closed_blades(task, begun)
     assert [count, *(each for _, each in others)] == [RICH_LAW_COUNT, LAW_COUNT, LAW_COUNT]
     sides = model_of(closed).shape(closed).sides

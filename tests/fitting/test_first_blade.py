@@ -9,6 +9,7 @@ from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.blade.native.blade import Blade
 from bladewright.domain.row import turn_matrix
 from bladewright.errors import FitError
+from bladewright.fitting.families.kinds import DesignHeader
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.blade import (
     UPRIGHT,
@@ -25,6 +26,8 @@ from bladewright.fitting.model_selection.selection import GUESS_NOISE
 from bladewright.nurbs.closest import closest_on_surface
 from bladewright.section.laws import Span
 from machines import COARSE, built, example
+
+HEADER = DesignHeader(name="blade", length_unit="mm").known()
 
 
 def _truth(name: str) -> Blade:
@@ -47,13 +50,13 @@ def _share(design: UnifiedBlade, points: np.ndarray) -> float:
 @pytest.mark.slow
 def test_a_first_blade_lies_within_one_percent_of_the_chord() -> None:
     points = _cloud(_truth("centrifugal-impeller"), 600)
-    assert _share(first_blade(points, arrangement="annular").design, points) < 0.01
+    assert _share(first_blade(points, {**HEADER, "arrangement": "annular"}).design, points) < 0.01
 
 
 def test_a_first_blade_has_its_corners_within_one_percent_and_its_angles_and_the_count_and_unit_asked_for() -> None:
     truth = _truth("radial-turbine")
     points, span = _cloud(truth, 1000), Span(np.linspace(0.0, 1.0, 6))
-    found = first_blade(points, arrangement="annular", blade_count=20, length_unit="m").design
+    found = first_blade(points, {**HEADER, "arrangement": "annular", "blade_count": 20, "length_unit": "m"}).design
     assert (found.blade_count, found.length_unit) == (20, "m")
     assert _share(found, points) < 0.01
     for edge in ("leading_edge", "trailing_edge"):
@@ -69,7 +72,7 @@ def test_a_first_blade_has_its_corners_within_one_percent_and_its_angles_and_the
 @pytest.mark.slow
 def test_the_search_of_a_first_blade_leaves_the_metal_angles_of_its_slices() -> None:
     truth, span = _truth("propeller"), Span(np.linspace(0.0, 1.0, 6))
-    found = first_blade(_cloud(truth, 1000), arrangement="annular").design
+    found = first_blade(_cloud(truth, 1000), {**HEADER, "arrangement": "annular"}).design
     for name in ("metal_angle_in", "metal_angle_out"):
         there, here = (np.real(span.values(getattr(design, name))) for design in (truth.design, found))
         assert np.max(np.abs(there - here)) < 20.0
@@ -78,7 +81,7 @@ def test_the_search_of_a_first_blade_leaves_the_metal_angles_of_its_slices() -> 
 @pytest.mark.slow
 def test_a_first_blade_is_brought_nearer_from_usual_edges() -> None:
     points = _cloud(_truth("vki-ls89"), 600)
-    first = first_blade(points, arrangement="linear")
+    first = first_blade(points, {**HEADER, "arrangement": "linear"})
     task = Task(
         points=points, weights=np.ones(600), free=FreeParameters(), bounds={}, preliminary=True, outline=first.walls
     )
@@ -110,7 +113,7 @@ def test_a_first_blade_is_found_from_noisy_points_of_part_of_the_span_on_the_oth
     truth = _truth("compressor-stator")
     clean = _cloud(truth, 700, 0.3, 0.8) * np.array([1.0, -1.0, -1.0])
     points = _disturbed(clean, truth.chord)
-    assert _share(first_blade(points, arrangement="annular").design, clean) < 0.01
+    assert _share(first_blade(points, {**HEADER, "arrangement": "annular"}).design, clean) < 0.01
 
 
 @pytest.mark.slow
@@ -119,7 +122,7 @@ def test_noise_and_outliers_leave_a_first_blade_close(name: str) -> None:
     truth = _truth(name)
     clean = _cloud(truth, 700)
     points = _disturbed(clean, truth.chord)
-    assert _share(first_blade(points, arrangement="annular").design, clean) < 0.015
+    assert _share(first_blade(points, {**HEADER, "arrangement": "annular"}).design, clean) < 0.015
 
 
 @pytest.mark.parametrize(("name", "arrangement"), [("vki-ls89", "linear"), ("compressor-stator", "annular")])
@@ -163,7 +166,7 @@ def test_what_cannot_be_sliced_as_a_cascade_still_stands_around_the_axis(monkeyp
 @pytest.mark.slow
 def test_a_first_blade_that_is_far_around_the_axis_is_sought_in_a_cascade() -> None:
     points = _cloud(_truth("vki-ls89"), 400) @ turn_matrix(-UPRIGHT).T
-    found = first_blade(points)
+    found = first_blade(points, HEADER)
     assert found.turn == UPRIGHT
     assert _share(found.design, points @ turn_matrix(found.turn).T) < 0.01
 
@@ -184,9 +187,10 @@ def test_rows_at_the_ends_of_first_blades_tell_their_arrangement(name: str, arra
     points = _with_rows(blade, np.random.default_rng(5), noise)
     # a cascade so far from the axis that nothing else tells
     points[:, 2] += 5.0 * blade.chord if arrangement == "linear" else 0.0
-    found = [each.design.arrangement for each in arranged_blades(points)]
+    found = [each.design.arrangement for each in arranged_blades(points, HEADER)]
     assert found == [arrangement]
-    assert [each.design.arrangement for each in arranged_blades(points, arrangement="annular")] == ["annular"]
+    given = arranged_blades(points, {**HEADER, "arrangement": "annular"})
+    assert [each.design.arrangement for each in given] == ["annular"]
 
 
 @pytest.mark.parametrize(
@@ -202,18 +206,18 @@ def test_rows_at_the_ends_of_first_blades_tell_their_arrangement(name: str, arra
 def test_rows_decide_where_those_of_one_arrangement_are_narrow_and_clearly_narrower(
     monkeypatch: pytest.MonkeyPatch, around: float, level: float, found: list[str]
 ) -> None:
-    def begun(_: np.ndarray, arrangement: str | None = None) -> FirstBlade:
-        return FirstBlade(design=example("vki-ls89" if arrangement else "compressor-stator"), walls=())
+    def begun(_: np.ndarray, header: dict[str, str | None]) -> FirstBlade:
+        return FirstBlade(design=example("vki-ls89" if header["arrangement"] else "compressor-stator"), walls=())
 
     module = "bladewright.fitting.initial_guess.blade"
     spread = {"annular": around, "linear": level}
     monkeypatch.setattr(f"{module}.first_blade", begun)
     monkeypatch.setattr(f"{module}._row_spread", lambda _, begun: spread[begun.design.arrangement])
     points = _cloud(_truth("vki-ls89"), 400)
-    assert [each.design.arrangement for each in arranged_blades(points)] == found
+    assert [each.design.arrangement for each in arranged_blades(points, HEADER)] == found
 
 
 @pytest.mark.slow
 def test_without_rows_at_its_ends_a_blade_may_stand_in_both_arrangements() -> None:
     points = _cloud(_truth("compressor-stator"), 1500, 0.05, 0.95)
-    assert [each.design.arrangement for each in arranged_blades(points)] == ["annular", "linear"]
+    assert [each.design.arrangement for each in arranged_blades(points, HEADER)] == ["annular", "linear"]

@@ -45,7 +45,7 @@ def matched_blade(
     # how near a number of parameters comes does not tell arrangements apart, a rich match does
     asked = replace(target, parameters=None)
     few = task.thinned(THOROUGH_POINTS).points
-    begun_with = [None] if start is not None else arranged_blades(few, **header.known(like))
+    begun_with = [None] if start is not None else arranged_blades(few, header.known(like))
     for begun in begun_with:
         there, first = task, start
         try:

@@ -96,7 +96,7 @@ def matched_unified(
     elif task.dimension == 2:
         guessed = first_section(task.thinned(THOROUGH_POINTS).points, header, wanted or FIRST_SECTION)
     else:
-        begun = first_blade(task.thinned(THOROUGH_POINTS).points, **header.known(like))
+        begun = first_blade(task.thinned(THOROUGH_POINTS).points, header.known(like))
         guessed, task = begun.design, replace(task.turned(begun.turn), outline=begun.walls)
     first = task.free.applied(guessed)
     if start is None and first is not guessed:

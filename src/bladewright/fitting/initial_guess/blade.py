@@ -5,14 +5,14 @@ stream surfaces give camber and thickness, whose laws make a blade with few cont
 blade then brings it to the points.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from bladewright.blade.design.row_design import Arrangement, LengthUnit
+from bladewright.blade.design.row_design import Arrangement
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.domain.row import turn_matrix
 from bladewright.errors import BladewrightError, FitError
@@ -44,25 +44,16 @@ class FirstBlade:
     """angle about x by which the points are turned, as the span of a cascade lies along y [rad]"""
 
 
-def first_blade(
-    points: Reals,
-    *,
-    arrangement: Arrangement | None = None,
-    blade_count: int | None = None,
-    pitch: float | None = None,
-    name: str = "blade",
-    length_unit: LengthUnit = "mm",
-) -> FirstBlade:
-    """A blade of the unified family near points (n, 3) [m] in the machine's axes.
+def first_blade(points: Reals, header: Mapping[str, Any]) -> FirstBlade:
+    """A blade of the unified family near points (n, 3) [m] in the machine's axes; `header` is that of its design.
 
-    Where blade_count, or pitch [m] of a linear cascade, is not given, one is taken at which neighbours stand apart.
-    Where no arrangement is given, and a blade around the axis is far off, one in a cascade is sought as well, with its
-    span along z or y. Raises FitError where no blade that can be built lies near the points.
+    Where blade_count, or pitch [m] of a linear cascade, is None, one is taken at which neighbours stand apart. Where
+    the arrangement is None, and a blade around the axis is far off, one in a cascade is sought as well, with its span
+    along z or y. Raises FitError where no blade that can be built lies near the points.
     """
     points = without_isolated_points(np.unique(np.asarray(points, dtype=np.float64), axis=0))
-    header = {"name": name, "length_unit": length_unit, "blade_count": blade_count, "pitch": pitch}
     tried, refusals = list[tuple[float, FirstBlade]](), list[FitError]()
-    for turn, seen, channels in likely_arrangements(points, arrangement):
+    for turn, seen, channels in likely_arrangements(points, header["arrangement"]):
         try:
             begun = {**header, "arrangement": seen}
             tried.append(_searched_blade(points @ turn_matrix(turn).T, channels, begun, turn))
@@ -77,18 +68,19 @@ def first_blade(
     return tried[-1][1] if tried[-1][0] < CLEARLY_LINEAR * tried[0][0] else tried[0][1]
 
 
-def arranged_blades(points: Reals, *, arrangement: Arrangement | None = None, **header: Any) -> list[FirstBlade]:
+def arranged_blades(points: Reals, header: Mapping[str, Any]) -> list[FirstBlade]:
     """First blades near points (n, 3) [m] in the arrangements in which they may stand, the likelier one first.
 
     There is one alone where the arrangement is given or where the rows of points at both ends show it: they lie on
     surfaces of revolution, or in a cascade on cylinders along y. Arguments and errors are those of `first_blade`.
     """
-    first = first_blade(points, arrangement=arrangement, **header)
-    if arrangement is not None or first.design.arrangement == "linear":
+    first = first_blade(points, header)
+    if header["arrangement"] is not None or first.design.arrangement == "linear":
         return [first]
     try:
         turn = UPRIGHT if spans_along_y(points) else 0.0
-        other = replace(first_blade(points @ turn_matrix(turn).T, arrangement="linear", **header), turn=turn)
+        linear = {**header, "arrangement": "linear"}
+        other = replace(first_blade(points @ turn_matrix(turn).T, linear), turn=turn)
     except BladewrightError:
         # what cannot be sliced as a cascade is none
         return [first]
