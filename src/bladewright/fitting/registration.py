@@ -224,8 +224,7 @@ AXES_POINTS = 2000
 PRISM_THICKNESS = 1e-3
 """thickness of a prism's projection, of the extent: a few times a scan's noise (design/matching_constants.md)"""
 NORMAL_NEIGHBOURS, CURVE_NEIGHBOURS = 12, 60
-"""nearest points that a plane is laid through, and a parabola of the section, on which many stand above each other
-(design/matching_constants.md)"""
+"""nearest points of a plane, and of a parabola of the section, where many are in line (design/matching_constants.md)"""
 STEPS, SETTLED = 12, 1e-8
 """steps of the least squares at most, and the last turn [rad] (design/matching_constants.md)"""
 EDGE = 0.1

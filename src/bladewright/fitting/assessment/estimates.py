@@ -22,8 +22,7 @@ one scale wide (design/matching_constants.md)"""
 CORRELATED_POINTS, CORRELATED_NEIGHBOURS = 2000, 512
 """points that are compared with neighbours, and these at most; they bound the time (design/matching_constants.md)"""
 FIRST_NEIGHBOURS, BY_CHANCE = 4, 2.0
-"""neighbours that are compared first, twice as many each time, and standard errors that a correlation has by chance: 95
-in 100 are lower (Bartlett 1946)"""
+"""neighbours compared first, doubled each time, and standard errors of a correlation by chance (95 %: Bartlett 1946)"""
 LARGEST_CONDITION = 1e7
 """condition of the scaled derivatives from which a parameter is not determined (design/matching_constants.md)"""
 AT_BOUND = 1e-3

@@ -21,8 +21,7 @@ from bladewright.nurbs.surface import Surface
 from bladewright.section.section import Section
 
 LAST_STEP = 1e-10
-"""last step of the descents, in the parameters of a patch: points on a blade of 36 mm chord are then 1e-11 m off, and
-2e-10 m with the 1e-8 of other searches"""
+"""last step of descents, in a patch's parameters: a chord of 36 mm is met to 1e-11 m, and with 1e-8 to 2e-10 m"""
 OFF_SIDES = 3.0
 """standard deviations from which a point is off the sides, maybe on another face: three sigma (Pukelsheim 1994)"""
 

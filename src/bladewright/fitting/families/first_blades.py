@@ -55,8 +55,7 @@ RICH_LAW_COUNT = 6
 SMALLER_RADII = (0.8, 0.4, 0.2)
 """shares of its edge radii with which a closed blade is tried that cannot be built with all (design/matching.md)"""
 ROUNDNESS_PLACE, ROUNDER_RATIO = 0.04, 1.3
-"""chord fraction from an edge at which half thicknesses are compared, and their ratio from which one edge is the
-rounder one (design/matching_constants.md)"""
+"""chord fraction from edges whose half thickness tells the rounder one, and ratio (design/matching_constants.md)"""
 PLANES_ALIKE, IN_DOUBT = 1.5, 1.25
 """ratio of misfits in the middle up to which a plane may be the right one, and of those of whole blades up to which the
 plane is kept that designs have by default (design/matching.md)"""
@@ -174,9 +173,8 @@ class _Frame:
 
 def _nearest(blades: Sequence[tuple[Match, _Frame]]) -> tuple[Match, _Frame]:
     """The blade that is nearest to the points; in doubt the one in the plane that designs have by default."""
-    off = misfits([blade for blade, _ in blades])
     doubt = [IN_DOUBT if frame.plane == CONFORMAL else 1.0 for _, frame in blades]
-    return blades[int(np.argmin(np.divide(off, doubt)))]
+    return blades[int(np.argmin(np.divide(misfits([blade for blade, _ in blades]), doubt)))]
 
 
 def _band(task: Task, closed: ModelShape, v: float) -> Reals:

@@ -81,8 +81,7 @@ CURVATURE_MEANLINES = tuple(
 STRAIGHT = np.radians(0.5)
 """turning of a mean line [rad] below which the shape of its second derivative cannot be seen"""
 LEAST_CURVATURE = 0.1
-"""smallest control point of the second derivative to begin with, of the largest: of one sign, it always has a shape
-(design/matching_constants.md)"""
+"""smallest control point of the second derivative at first, of the largest: one sign (design/matching_constants.md)"""
 
 
 @first_part.register

@@ -85,7 +85,9 @@ def regularisation_of(
     rows, rhs = [np.diag(1.0 / spread)], [0.0] * len(paths)
     values = start.parameters()
     index = {path: i for i, path in enumerate(paths)}
-    tangents = _tangents(start, TANGENT_SPREAD * float(np.sqrt(independent_share)))
+    wide = TANGENT_SPREAD * float(np.sqrt(independent_share))
+    shown = [path for path in values if path.startswith(TANGENTS)] if isinstance(start, UnifiedBlade) else []
+    tangents: list[Row] = [([(path, 1.0)], USUAL_TANGENT, wide) for path in shown]
     bends = chain(_second_differences(start), _meridional_bends(start))
     for terms, usual, width in chain(bends, _thickness_differences(start), tangents):
         free = {index[path]: factor for path, factor in terms if path in index}
@@ -133,13 +135,6 @@ def _thickness_differences(start: Design) -> Iterator[Row]:
     if len(above) == len(below):
         for pair in zip(above, below, strict=True):
             yield list(zip(pair, (1.0, -1.0), strict=True)), 0.0, CAMBER_SPREAD
-
-
-def _tangents(start: Design, spread: float) -> Iterator[Row]:
-    if isinstance(start, UnifiedBlade):
-        for path in start.parameters():
-            if path.startswith(TANGENTS):
-                yield [(path, 1.0)], USUAL_TANGENT, spread
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
