@@ -9,8 +9,8 @@ from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
-from bladewright.fitting.model_selection import other_minima
-from bladewright.fitting.model_selection.other_minima import CLUSTERING_TOLERANCE, nearest_by_clustering
+from bladewright.fitting.model_selection import selection
+from bladewright.fitting.model_selection.selection import CLUSTERING_TOLERANCE, nearest_by_clustering
 from machines import COARSE, built, example
 
 STATOR = example("compressor-stator").changed({"tolerance": COARSE})
@@ -49,6 +49,6 @@ def test_a_match_that_is_near_or_whose_misfit_is_of_another_kind_is_not_searched
     def refused(*_: object, **__: object) -> Match:
         raise AssertionError("searched again")
 
-    monkeypatch.setattr(other_minima, "searched", refused)
+    monkeypatch.setattr(selection, "searched", refused)
     assert nearest_by_clustering(task, near) is near
     assert nearest_by_clustering(turned, far) is far

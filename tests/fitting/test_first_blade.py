@@ -21,8 +21,7 @@ from bladewright.fitting.initial_guess.blade import (
     spans_along_y,
 )
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Task, evaluated, searched
-from bladewright.fitting.model_selection.other_minima import nearest_from_other_edges
-from bladewright.fitting.model_selection.selection import GUESS_NOISE
+from bladewright.fitting.model_selection.selection import GUESS_NOISE, nearest_from_other_edges
 from bladewright.nurbs.closest import closest_on_surface
 from bladewright.section.laws import Span
 from machines import COARSE, built, example
@@ -86,7 +85,7 @@ def test_a_first_blade_is_brought_nearer_from_usual_edges() -> None:
         points=points, weights=np.ones(600), free=FreeParameters(), bounds={}, preliminary=True, outline=first.walls
     )
     plain = searched(task, first.design, noise=GUESS_NOISE, min_reduction=ROUGH_REDUCTION)
-    nearer = nearest_from_other_edges(task, plain, GUESS_NOISE)
+    nearer = nearest_from_other_edges(task, plain)
     assert nearer.mean_distance < 0.7 * plain.mean_distance
 
 

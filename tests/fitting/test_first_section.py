@@ -10,8 +10,7 @@ from bladewright.fitting.families.kinds import DesignHeader
 from bladewright.fitting.families.unified import first_section
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Task, searched
-from bladewright.fitting.model_selection.other_minima import nearest_from_other_edges
-from bladewright.fitting.model_selection.selection import GUESS_NOISE
+from bladewright.fitting.model_selection.selection import GUESS_NOISE, nearest_from_other_edges
 from bladewright.fitting.model_selection.structure import Structure
 from bladewright.nurbs.closest import closest_on_curve
 from bladewright.section.unified import UnifiedSection
@@ -101,7 +100,7 @@ def test_a_section_in_another_minimum_is_met_from_usual_edges_where_it_is_not_tr
     task = Task(points=points, weights=np.ones(200), free=FreeParameters(), bounds={}, preliminary=True)
     off = truth.changed({"tangent_in": 0.9, "stagger": truth.stagger + 8.0})
     plain = searched(task, off, noise=GUESS_NOISE, min_reduction=ROUGH_REDUCTION)
-    assert nearest_from_other_edges(task, plain, GUESS_NOISE) is plain
-    monkeypatch.setattr("bladewright.fitting.model_selection.other_minima.GROSS_DEVIATION", (0.0, 0.0))
-    nearer = nearest_from_other_edges(task, plain, GUESS_NOISE)
+    assert nearest_from_other_edges(task, plain) is plain
+    monkeypatch.setattr("bladewright.fitting.model_selection.selection.GROSS_DEVIATION", (0.0, 0.0))
+    nearer = nearest_from_other_edges(task, plain)
     assert nearer.mean_distance < 1e-3 * plain.mean_distance

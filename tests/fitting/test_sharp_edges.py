@@ -3,7 +3,7 @@
 import numpy as np
 
 import bladewright as bw
-from bladewright.fitting.model_selection.other_minima import SHARP_RADIUS
+from bladewright.fitting.model_selection.selection import SHARP_RADIUS
 from bladewright.section.profiles.kinds import ProfileSection
 from bladewright.section.profiles.naca4 import Naca4
 
