@@ -56,9 +56,8 @@ NORMAL_95 = float(ndtri((1.0 + CONFIDENCE) / 2.0))
 def loose_ends(match: Match) -> dict[str, float]:
     """The ends of a blade that no row of points shows, and how far past the outermost points they may be [m] (95 %).
 
-    Empty for sections, and where the walls are held. The sides of a blade that goes on a little further are the same,
-    so that without a row only its outermost points tell where it ends: to each free parameter of a wall, held ones that
-    the points do not determine among them, belongs its share of the points there.
+    Empty for sections, and where the walls are held. Sides of a blade that goes on are the same, so that its outermost
+    points alone tell its end: to each free or undetermined parameter of a wall belongs its share of them.
     """
     if match.state.shape.exact is None:
         return {}
@@ -207,9 +206,8 @@ def least_thickness(match: Match) -> float:
 def foreign_edges(match: Match) -> dict[str, float]:
     """Edges of designs with round ones where points lie on a straight face, or on two straight sides: its width [m].
 
-    A face and both sides beside it are fitted to the points about the edge, across and along the camber line there. It
-    is taken for the cloud's where it leaves clearly less of the distances than the design, and than an arc and its
-    tangents that are fitted in the same way.
+    A face and both sides beside it are fitted to the points about the edge. It is the cloud's where it leaves clearly
+    less of the distances than the design, and than an arc and its tangents that are fitted in the same way.
     """
     if not match.model.rounded:
         return {}

@@ -108,11 +108,10 @@ def parameter_estimates(match: Match) -> ParameterEstimates:
 
 
 def shape_covariance(match: Match) -> tuple[tuple[str, ...], Reals]:
-    """The free parameters, and those of a blade that are held as undetermined; their covariance (k, k).
+    """The free parameters, and those of a blade that are held as undetermined; their covariance (k, k) in their units.
 
-    In the units of the fields. What points do not determine is known by the regularisation alone, the spread of smooth
-    designs: between rows of points that moves a blade's shape. Reference: Wahba 1983 (the penalty of a smoothing spline
-    as its prior, and intervals of what both leave).
+    What points do not determine is known by the regularisation alone, the spread of smooth designs (Wahba 1983: the
+    penalty of a smoothing spline as its prior): between rows of points that moves a blade's shape.
     """
     problem, held = match.problem, () if match.state.shape.exact is None else tuple(sorted(match.held))
     paths = *problem.paths, *held
@@ -155,8 +154,7 @@ def independent_share(places: Reals, residuals: Reals) -> float:
 def undetermined_parameters(match: Match, margin: float) -> list[str]:
     """Parameters without which the points determine all others, by a margin in standard deviations.
 
-    Each in turn is the one with the largest share in the direction that is determined least (Golub and Van Loan 2013,
-    section 5.5.7).
+    Each has the largest share in the direction that is determined least (Golub and Van Loan 2013, section 5.5.7).
     """
     slopes, _, variance, _ = _linearised(match, match.problem.paths, match.problem.scales.size)
     least = margin * float(np.sqrt(variance))

@@ -179,8 +179,7 @@ class ClosedChannel:
     def flow_path(self, metre: float, *, revolved: bool) -> FlowPath:
         """Hub and shroud, continued straight by equal parts of their lengths, so that the blade's ends match.
 
-        How far they are continued says which points of them are joined. Where these surfaces fold, fractions count from
-        edge to edge.
+        How far says which of their points are joined; where these surfaces fold, fractions count from edge to edge.
         """
         lines = [self.values(name, CURVE_PLACES) for name in WALLS]
         for longest in CONTINUATIONS:

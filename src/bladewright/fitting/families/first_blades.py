@@ -92,9 +92,8 @@ def first_of_family(
 def closed_blades(task: Task, begun: FirstBlade) -> Iterator[tuple[Design, int]]:
     """Closed blades from a first one, in the order to be tried, and the control points of laws that begin with them.
 
-    They are searched, with a rich structure where few control points are not near everywhere; the last is the one that
-    the search began with, whose edges miss no wall. Sections and channel are all that is taken from them, so that they
-    need not be fit to be built.
+    They are searched, richly where few control points are not near everywhere; the last is the first one, whose edges
+    miss no wall. They need not be fit to be built, as sections and channel are all that is taken from them.
     """
     task = replace(task.turned(begun.turn), free=FreeParameters(), bounds={}, walls=task.walls or begun.walls)
     found = searched(task.thinned(QUICK_POINTS), begun.design, noise=GUESS_NOISE, rounds=QUICK_ROUNDS)

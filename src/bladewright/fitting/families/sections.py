@@ -230,8 +230,7 @@ def compared(task: Task, designs: Iterable[Design], *, rounds: int = TRIAL_ROUND
 def misfits(matches: Sequence[Match]) -> list[float]:
     """Root mean square distances by which matches to the same points are compared, each of its chord.
 
-    Outliers count, as those of an edge that is not found are its own points, but none by more than what would be one of
-    the nearest match.
+    Outliers count, as those of an edge that is not found are its own, by no more than one of the nearest match.
     """
     bound = OUTLYING_MISFIT * min(each.rms for each in matches)
     distances = (each.state.footpoints.distances[~each.ends.on_end_face] / each.model.chord for each in matches)

@@ -101,8 +101,7 @@ class Net(Shape):
     def bending_root(self) -> Reals:
         """(b, N) matrix whose product with the control points has the bending as its sum of squares.
 
-        The bending is the integral of all squared second derivatives by the parameters, and a part of the first: a
-        thin plate under tension (Duchon 1977, Franke 1985).
+        Of squared second and some first derivatives: a thin plate under tension (Duchon 1977, Franke 1985).
         """
         of = [_products(knots, degree) for knots, degree in zip(self.knots, self.degrees, strict=True)]
         energy, *across = (bend + TENSION * slope for _, slope, bend in of)

@@ -62,8 +62,7 @@ def _loop(triangles: NDArray[np.intp], count: int) -> list[int] | None:
 def corner_sets(line: Reals) -> list[list[Reals]]:
     """Divisions of a closed boundary (m, 2) into four smooth pieces in order, the likeliest first.
 
-    The others lack one of the pieces of the first: an outline that ends in a point has three corners, and which of
-    these is a short curve does not show.
+    The others lack one of its pieces: an outline that ends in a point does not show which curve is the short one.
     """
     closed = np.concatenate([line, line[:1]])
     spread = np.ptp(line, axis=0)

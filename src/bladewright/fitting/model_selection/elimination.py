@@ -163,8 +163,7 @@ class LinearModel:
     def losses(self, prediction: Prediction) -> list[tuple[float, int, int, Counts]]:
         """What narrower laws cost: loss for each parameter, their number, the law's number, and its counts.
 
-        The loss is that of the linear constraints under which a law is one of fewer control points (Wald's statistic:
-        Seber and Wild 1989, section 5.2).
+        It is that of constraints under which a law has fewer (Wald's statistic: Seber and Wild 1989, section 5.2).
         """
         found, first = [], len(self._others)
         for i, (free_law, counts) in enumerate(zip(self.laws, prediction.counts, strict=True)):
