@@ -10,7 +10,7 @@ import pytest
 import bladewright as bw
 from bladewright.errors import FitError
 from bladewright.files.examples import example_text
-from bladewright.fitting.assessment.estimates import Estimate
+from bladewright.fitting.assessment.measurement import Estimate
 from bladewright.fitting.assessment.result import Fit
 from bladewright.nurbs.closest import closest_on_curve
 

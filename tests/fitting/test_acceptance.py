@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from bladewright.fitting.assessment.acceptance import Acceptance, MatchTarget
-from bladewright.fitting.assessment.estimates import parameter_estimates
-from bladewright.fitting.assessment.measurement import measured
+from bladewright.fitting.assessment.measurement import measured, parameter_estimates
 from bladewright.fitting.free_parameters import free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
 from machines import COARSE, example

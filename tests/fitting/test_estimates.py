@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import t as student
 
-from bladewright.fitting.assessment.estimates import independent_share, parameter_estimates
+from bladewright.fitting.assessment.measurement import independent_share, parameter_estimates
 from bladewright.fitting.free_parameters import Scales
 
 POINTS, COUNT = 400, 5

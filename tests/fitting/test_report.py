@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bladewright.fitting.assessment.estimates import Estimate
+from bladewright.fitting.assessment.measurement import Estimate
 from bladewright.fitting.assessment.result import LISTED_OUTLIERS, Fit, Motion
 from machines import example
 

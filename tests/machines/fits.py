@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from bladewright.fitting.assessment.estimates import Estimate
+from bladewright.fitting.assessment.measurement import Estimate
 from bladewright.fitting.assessment.result import Fit
 
 from . import COARSE, built, example

@@ -18,8 +18,7 @@ from bladewright.designs import Design
 from bladewright.domain.row import turn_matrix
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import Acceptance, MatchTarget
-from bladewright.fitting.assessment.estimates import parameter_estimates
-from bladewright.fitting.assessment.measurement import PlacesOfPoints, measured
+from bladewright.fitting.assessment.measurement import PlacesOfPoints, measured, parameter_estimates
 from bladewright.fitting.assessment.result import Fit, Motion
 from bladewright.fitting.checks import check_positive, check_progress, reals, refusing
 from bladewright.fitting.clouds.cloud import checked_cloud, different_points, refuse_hidden_blade, refuse_several_blades

@@ -10,8 +10,7 @@ from scipy.spatial import cKDTree
 from scipy.special import bdtrc
 
 from bladewright.fitting.assessment import coverage
-from bladewright.fitting.assessment.estimates import ParameterEstimates
-from bladewright.fitting.assessment.measurement import Measurement
+from bladewright.fitting.assessment.measurement import Measurement, ParameterEstimates
 from bladewright.fitting.assessment.result import with_unit
 from bladewright.fitting.clouds.thinning import groups
 from bladewright.fitting.matching.footpoints import BETWEEN_EDGES, EDGE_PARAMETERS, Footpoints

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.special import fdtri, ndtri
 
-from bladewright.fitting.assessment.estimates import shape_covariance
+from bladewright.fitting.assessment.measurement import shape_covariance
 from bladewright.fitting.free_parameters import parameters_of_curve
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS
 from bladewright.fitting.matching.footpoints import BETWEEN_EDGES, EDGE_PARAMETERS, Footpoints, footpoints_at, part_of

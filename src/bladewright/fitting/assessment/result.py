@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from bladewright.designs import Design, unit_at
 from bladewright.display import Shown
-from bladewright.fitting.assessment.estimates import ParameterEstimates
-from bladewright.fitting.assessment.measurement import PlacesOfPoints
+from bladewright.fitting.assessment.measurement import ParameterEstimates, PlacesOfPoints
 from bladewright.frozen import FrozenRecord
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS

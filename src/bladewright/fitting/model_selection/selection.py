@@ -21,7 +21,7 @@ from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import GROSS_DEVIATION, NEAR_EVERYWHERE, MatchTarget, trusted_distance
-from bladewright.fitting.assessment.estimates import undetermined_parameters
+from bladewright.fitting.assessment.measurement import undetermined_parameters
 from bladewright.fitting.free_parameters import corner_radii
 from bladewright.fitting.matching.footpoints import Side, nearest_footpoints
 from bladewright.fitting.matching.residuals import PlacedCloud
