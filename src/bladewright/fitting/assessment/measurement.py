@@ -164,8 +164,7 @@ def off_finished_faces(points: Reals, built: Blade) -> tuple[NDArray[np.str_], R
 
 
 IDENTIFIED_SPREAD = 0.3
-"""standard deviation, of a parameter's own scale, below which the cloud determines it: its 95 % interval is then about
-one scale wide (design/matching_constants.md)"""
+"""deviation of a determined parameter, of its scale: the 95 % interval is about one (design/matching_constants.md)"""
 CORRELATED_POINTS, CORRELATED_NEIGHBOURS = 2000, 512
 """points that are compared with neighbours, and these at most; they bound the time (design/matching_constants.md)"""
 FIRST_NEIGHBOURS, BY_CHANCE = 4, 2.0

@@ -69,8 +69,7 @@ from which theta is counted below which their angles are the same within half a 
 SECTION_HEADER = DesignHeader(name="section", length_unit="m")
 """of the section in the middle, which is matched on its own"""
 BAND = 0.15
-"""half the width, in v, of the band of points that show the section in its middle, and the least share of all points
-in a band (design/matching_constants.md)"""
+"""half width, in v, of the band of points of the middle section, and its least share (design/matching_constants.md)"""
 
 
 def first_of_family(

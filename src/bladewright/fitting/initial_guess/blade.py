@@ -170,8 +170,7 @@ ROW_DEGREE, ROW_TURNS, ROW_OUTLIER = 5, 5, 6.7
 """degree of a row's line, iterations in which it is found, and distance from it, in medians, beyond which a point does
 not belong to the row (design/matching_constants.md)"""
 CLEARER_ROW, CLEAR_ROW = 0.5, 1e-3
-"""ratio of the scatters of rows in two arrangements which decides, and largest scatter, of the span, of one on a plane
-(design/matching.md)"""
+"""ratio of rows' scatters that decides, and largest scatter of one on a plane, of the span (design/matching.md)"""
 
 UPRIGHT = -0.5 * np.pi
 """angle about x that brings y to z [rad]"""

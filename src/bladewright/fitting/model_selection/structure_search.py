@@ -52,8 +52,7 @@ TO_SPARE = 0.8
 """share of the largest distance that is asked for which a rich match reaches, so that control points can be left out,
 and which is predicted of matches of which nothing is asked, as predictions are linear (design/matching.md)"""
 NEAR, ENOUGH = 0.5 * EXACT, TO_SPARE * NEAR_EVERYWHERE
-"""largest distances, of the chord, that matches are predicted to have of which nothing is asked: where they can be
-exact, and else (design/matching.md)"""
+"""largest distances predicted where nothing is asked, of the chord: of exact points, and else (design/matching.md)"""
 WORTHWHILE, MOST_PREDICTIONS = 0.9, 8
 """share of the parameters of a match that a structure may have with which a search for fewer goes on; and matches about
 which structures are predicted for one aim at most (design/matching_constants.md)"""
