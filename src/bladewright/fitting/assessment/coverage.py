@@ -86,10 +86,7 @@ def largest_gap(count: int, parts: int) -> float:
 
 
 def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:
-    """Rounded edges without a point on their arc: the blade's width where the points end [m], and of its thickest.
-
-    A point on the arc is nearer to its middle than the other side is, which no point before it is.
-    """
+    """Rounded edges without a point on their arc: the blade's width where the points end [m], and of its thickest."""
     if not match.model.rounded:
         return {}
     footpoints, shape = match.state.footpoints, match.state.shape
@@ -105,6 +102,7 @@ def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:
         side, u, v = footpoints.side[nearest], footpoints.u[nearest], footpoints.v[nearest]
         near_end, tip, across = (shape.places(*at) for at in ((side, u, v), (side, end, v), (1 - side, u, v)))
         width = np.sqrt(np.sum((near_end - across) ** 2, axis=-1))
+        # a point on the arc is nearer to its middle than the other side is, which no point before it is
         if np.mean(np.sqrt(np.sum((near_end - tip) ** 2, axis=-1)) <= width) < COVERED_SHARE:
             wide = float(np.median(width))
             u = np.linspace(0.0, 1.0, THICKNESS_SAMPLES)

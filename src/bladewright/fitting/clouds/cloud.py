@@ -168,10 +168,7 @@ def _moved_onto(piece: Reals, other: Reals) -> tuple[float, str] | None:
 
 
 def _pitch_of_wheel(points: Reals) -> str | None:
-    """The pitch of blades all around the axis, in words.
-
-    Turned by the pitch either way, most points lie twice as near to the cloud as turned by half of it.
-    """
+    """The pitch of blades around the axis, in words: turned by it most points lie twice as near as by half of it."""
     tree, some = cKDTree(points), points[random_subset(len(points), TURNED_POINTS)]
 
     def away(turn: float) -> float:

@@ -34,10 +34,7 @@ CONTOUR_POINTS = 32
 def matched_blade(
     task: Task, kind: FitFamily, start: Any, like: Any, header: DesignHeader, target: MatchTarget
 ) -> tuple[Match, str]:
-    """The match of points (n, 3) by a blade of the family, and why it ends where no target is met.
-
-    `start` and `like` are blades of it, or None. Raises FitError where none has a shape near the points.
-    """
+    """The match of points (n, 3) by a blade of the family, which `start` and `like` are of, and why it ends."""
     own = start is None and like is None
     if own:
         task = replace(task, free=replace(task.free, walls=True))

@@ -46,10 +46,7 @@ TOLERANCES = (0.0, 1e-8, 1e-6)
 def matched_section(
     task: Task, kind: FitFamily, start: Any, like: Any, header: DesignHeader, target: MatchTarget
 ) -> tuple[Match, str]:
-    """The match of points (n, 2) by a section of the family, and why it ends where no target is met.
-
-    `start` and `like` are sections of it, or None. Raises FitError where no structure has a shape near the points.
-    """
+    """The match of points (n, 2) by a section of the family, which `start` and `like` are of, and why it ends."""
     if start is not None and like is None:
         check_bounds(start, task.free(start), task.bounds)
         found, reason = selected_match(task, start, target, like=None, guessed=False)

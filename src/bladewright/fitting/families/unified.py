@@ -39,10 +39,7 @@ NOISE, ROUNDS = 0.01, 5
 
 
 def first_section(points: Reals, header: DesignHeader, structure: Structure = FIRST_SECTION) -> UnifiedSection:
-    """A section of the unified family near points (n, 2) [m], x axial and y tangential, found from them alone.
-
-    Raises FitError where no section that can be built lies near the points.
-    """
+    """A section of the unified family near points (n, 2) [m], x axial, y tangential; refused if none can be built."""
     points = without_isolated_points(np.unique(np.asarray(points, dtype=np.float64), axis=0))
     points = points[even_subset(points, DRAWN_POINTS)]
     start, extent = np.array([np.min(points[:, 0]), np.mean(points[:, 1])]), np.ptp(points[:, 0])
@@ -85,10 +82,7 @@ def first_section(points: Reals, header: DesignHeader, structure: Structure = FI
 def matched_unified(
     task: Task, start: Design | None, like: Design | None, header: DesignHeader, target: MatchTarget
 ) -> tuple[Match, Any, str]:
-    """The match of points (n, 2) or (n, 3), what it builds, and why it ends where no target is met.
-
-    Raises FitError where no design is found near the points, or the nearest one cannot be built.
-    """
+    """The match of points (n, 2) or (n, 3), what it builds, and why it ends; refused where none is found or built."""
     wanted = None if like is None else structure_of(like)
     task.progress("first design")
     if start is not None:

@@ -227,15 +227,13 @@ def placed(shape: S, points: Reals) -> ShapeMatch[S]:
 
 
 def matched(match: ShapeMatch[S], stiffness: float, end: tuple[int, float] = LAST) -> ShapeMatch[S]:
-    """The shape at which the cost of the distances, and `stiffness` times its bending, are least.
-
-    Places follow the shape by descent while it moves, and are sought everywhere at the end (design/freeform.md).
-    """
+    """The shape at which the cost of the distances, and `stiffness` times its bending, are least."""
     if len(match.shape.unknowns) == 0:
         return replace(match, converged=True)
     problem, (steps, reduction) = Problem(match, stiffness), end
     found = constrained_minimum(problem, problem.start, steps=steps, min_reduction=reduction, accelerated=False)
     last = problem.at(found.z)
+    # places follow the shape by descent while it moves, and are sought everywhere at the end (design/freeform.md)
     everywhere = last.on(last.shape)
     nearer = (everywhere.distances < last.distances)[:, None]
     return replace(

@@ -85,10 +85,7 @@ class Slices:
 
 
 def slices_of(plane: PlanePoints, turn: Reals, stations: Reals, count: int) -> Slices:
-    """The sections of points whose chord lies along the law `turn` (k,) [rad], with laws of `count` control points.
-
-    Ordinates count from near the sections: the weak pull of the least squares is towards zero.
-    """
+    """The sections of points whose chord lies along the law `turn` (k,) [rad], with laws of `count` control points."""
     direction = law_basis(len(turn), plane.v) @ turn
     cosine, sine = np.cos(direction), np.sin(direction)
     rows, at = law_basis(count, plane.v), law_basis(count, stations)
@@ -207,7 +204,7 @@ def _half_basis(t: Reals) -> Reals:
 
 
 def _ridge(matrix: Reals, rhs: Reals, weight: Reals) -> Reals:
-    """Weighted least squares (n,), with a weak pull of all coefficients towards zero."""
+    """Weighted least squares (n,), with a weak pull of all coefficients to zero: ordinates count from near there."""
     rows = matrix * weight[:, None]
     normal = rows.T @ rows
     normal[np.diag_indices_from(normal)] += RIDGE**2 * np.sum(weight**2)

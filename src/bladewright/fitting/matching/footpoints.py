@@ -107,14 +107,12 @@ def nearest_footpoints(
 
 
 def _facing_corners(footpoints: Footpoints, sides: Sequence[Side]) -> Footpoints:
-    """The footpoints with those at corners, of blunt and sharp edges, facing their points, which lie outside.
-
-    The normal of either side there is across the way to the point, so that a point ahead of an edge would cost nothing.
-    """
+    """The footpoints with those at corners, of blunt and sharp edges, facing their points, which lie outside."""
     corner = np.zeros(len(footpoints.u), dtype=bool)
     for number, side in enumerate(sides):
         knots, degree = (side.knots, side.degree) if isinstance(side, Curve) else (side.knots_u, side.degree_u)
         corner |= (footpoints.side == number) & np.isin(footpoints.u, corners(knots, degree))
+    # the normal of either side there is across the way to the point, so that one ahead of an edge would cost nothing
     way = footpoints.miss - np.sum(footpoints.miss * footpoints.beyond, axis=-1)[:, None] * footpoints.beyond
     size = np.sqrt(np.sum(way**2, axis=-1))
     corner &= np.abs(np.sum(way * footpoints.normals, axis=-1)) < FACING * size

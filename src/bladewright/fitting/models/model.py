@@ -80,10 +80,7 @@ class Model(ABC):
 
     @abstractmethod
     def shape(self, design: Any) -> ModelShape:
-        """The sides of a design; raises DesignError where there are none at all.
-
-        Invalid operations leave values that are not finite.
-        """
+        """The sides of a design, not finite after invalid operations; raises DesignError where there are none."""
 
     @abstractmethod
     def along(self, shape: ModelShape, footpoints: Footpoints, directions: Reals, paths: Sequence[str]) -> Reals:
