@@ -44,7 +44,10 @@ def gauge_parameters(design: Design, *, walls: bool = False) -> frozenset[str]:
     """
     values, section = design.parameters(), getattr(design, "section", None)
     held = [*NOT_IN_CLOUD]
-    found = _largest_curvature(values)
+    # the whole law of the control point of the second derivative that is largest
+    curvature = {path: value for path, value in values.items() if path.startswith("section.curvature[")}
+    largest = max(curvature, key=lambda path: curvature[path] ** 2, default="")
+    found = {path for path in curvature if path.startswith(largest.partition("]")[0] + "]")}
     if isinstance(section, Segmented):
         held += ["section.partition", "section.stagger_angle", "leading_edge_y"]
     if isinstance(section, PointsProfile):
@@ -100,13 +103,6 @@ def _along_contour(section: PointsProfile) -> set[str]:
     held = {f"{'abscissas' if along_x[i] >= along_y[i] else 'ordinates'}[{i}]" for i in range(len(x))}
     held |= {f"{name}[{i}]" for name in ("abscissas", "ordinates") for i in (int(np.argmin(x)), int(np.argmax(x)))}
     return {f"section.{path}" for path in section.parameters() if path.startswith(tuple(held))}
-
-
-def _largest_curvature(values: Mapping[str, float]) -> set[str]:
-    """The whole law of the control point of the second derivative that is largest."""
-    found = {path: value for path, value in values.items() if path.startswith("section.curvature[")}
-    largest = max(found, key=lambda path: found[path] ** 2, default="")
-    return {path for path in found if path.startswith(largest.partition("]")[0] + "]")}
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -90,7 +90,7 @@ def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:
     if not match.model.rounded:
         return {}
     footpoints, shape = match.state.footpoints, match.state.shape
-    part = _part_of(footpoints.side, footpoints.v)
+    part = part_of(footpoints.v, PARTS, footpoints.side)
     uncovered = {}
     for name, end in EDGE_PARAMETERS.items():
         away = np.where(match.rows, np.abs(footpoints.u - end), np.inf)
@@ -182,15 +182,10 @@ def bare_places(match: Match, places: Footpoints, known: NDArray[np.bool_]) -> d
         borders |= {name: (end, known, places.v, places.u, feet.v, feet.u) for name, end in END_PARAMETERS.items()}
     for name, (end, near, at, across, own, own_across) in borders.items():
         nearest, away = np.full(2 * PARTS, np.inf), np.abs(at - end)
-        np.minimum.at(nearest, _part_of(feet.side, own_across), np.abs(own - end))
-        past = away < np.minimum(nearest[_part_of(places.side, across)], 0.5)
+        np.minimum.at(nearest, part_of(own_across, PARTS, feet.side), np.abs(own - end))
+        past = away < np.minimum(nearest[part_of(across, PARTS, places.side)], 0.5)
         found[name] = past & near & np.any(known[away == 0.0])
     return found
-
-
-def _part_of(side: NDArray[np.intp], along: Reals) -> NDArray[np.intp]:
-    """Numbers (n,) of the parts of both sides in which places are."""
-    return side * PARTS + part_of(along, PARTS)
 
 
 def least_thickness(match: Match) -> float:

@@ -275,7 +275,7 @@ def _along_span(shapes: Sequence[SectionShape], part: Any) -> list[Any]:
 
 def _matched(kind: FitFamily, shape: SectionShape, points: Reals, like: Any) -> Match:
     """The match of points (n, 2) of a section by the best kind of section, or by the structure of a given part."""
-    task = Task(points=points, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
+    task = Task(points=points, weights=np.ones(len(points)))
     tried = compared(task.thinned(TRIAL_POINTS), first_designs(kind, shape, like, SECTION_HEADER, task))[:CONSIDERED]
     found = [searched(task, each.design, rounds=QUICK_ROUNDS, fading=True) for each in tried]
     return found[int(np.argmin(misfits(found)))]
@@ -284,7 +284,7 @@ def _matched(kind: FitFamily, shape: SectionShape, points: Reals, like: Any) -> 
 def _in_place(kind: FitFamily, frame: _Frame, middle: Any) -> Any:
     """The part of a section in the middle, searched again with the edges where the closed blade's section has them."""
     free = FreeParameters(fixed=("chord", "leading_edge_x", "leading_edge_y"))
-    task = Task(points=frame.points, weights=np.ones(len(frame.points)), free=free, bounds={})
+    task = Task(points=frame.points, weights=np.ones(len(frame.points)), free=free)
     first = next(first_designs(kind, frame.shapes[MIDDLE], middle.section, SECTION_HEADER, task))
     found: Any = searched(task, first, rounds=QUICK_ROUNDS, fading=True).design
     return found.section

@@ -93,13 +93,9 @@ class FirstChannel:
         radius = position[..., 1] if self.revolved else np.ones(position.shape[:-1])
         return np.asarray(np.maximum(radius, LEAST_RADIUS * float(np.max(radius))))
 
-    def extents(self, v: Reals) -> tuple[Reals, Reals]:
-        """Extents in the plane and meridional lengths [m] (n,) of the stream lines at v (n,)."""
-        return self._ways[0].ev(v, 1.0), self._ways[1].ev(v, 1.0)
-
-    def abscissa(self, u: Reals, v: Reals) -> Reals:
-        """Abscissa (n,) in the plane of the section at v."""
-        return np.asarray(self._ways[0].ev(v, u))
+    def extents(self, v: Reals, u: Reals | float = 1.0) -> tuple[Reals, Reals]:
+        """Extents in the plane and meridional lengths [m] (n,) of the stream lines at v (n,), up to u."""
+        return self._ways[0].ev(v, u), self._ways[1].ev(v, u)
 
     def radius(self, u: Reals, v: Reals) -> Reals:
         """Radius (m, k) [m], or 1 of a cascade, at u (k,) and v (m,)."""
@@ -221,7 +217,7 @@ def sliced_channel(machine: Reals, named: dict[str, Reals], *, revolved: bool) -
     rows, around = law_basis(LAW_COUNT, v), machine[:, 2]
     place = np.linalg.lstsq(rows, around, rcond=None)[0]
     plane = PlanePoints(
-        points=np.stack([channel.abscissa(u, v), around - rows @ place], axis=-1) / extent[:, None], v=v
+        points=np.stack([channel.extents(v, u)[0], around - rows @ place], axis=-1) / extent[:, None], v=v
     )
     slices = slices_of(plane, chord_direction(plane), STATIONS, LAW_COUNT)
     camber = slices.camber.copy()

@@ -33,8 +33,7 @@ FACE_BAND, FACE_DEPTH, FACE_NEARER_WALL = 0.1, 5.0, 0.3
 """of a point of an end face: largest distance from the end, in v, least depth, in usual distances from the sides, and
 largest distance from the wall or a row of outliers, of that depth (design/matching_constants.md)"""
 FACE_OUTLIERS, FACE_OUTLIERS_NEARER_WALL = 20, 0.1
-"""fewest outliers that may be an end face, and the largest median of their distances from one row, of their depths
-(design/matching_constants.md)"""
+"""fewest outliers of an end face, and median of distances from a row, of their depths (design/matching_constants.md)"""
 DEEPEST_FACE_POINT = 0.2
 """least depth of an end face's deepest point, of the blade's half thickness (design/matching_constants.md)"""
 PAST_END_BAND = 0.05
@@ -304,16 +303,10 @@ def outward_at_edges(sides: Sequence[Side], u: Reals, v: Reals) -> Reals:
     out = np.zeros((len(u), np.real(sides[0].control_points).shape[-1]))
     for number, side in enumerate(sides):
         at = footpoints_at(None, sides, number, u, v)
-        out += at.normals + np.where(u > 0.5, 1.0, -1.0)[:, None] * unit_or_zero(_slopes(side, u, v, 0))
+        along = side.derivative(u, v, 1, 0) if isinstance(side, Surface) else side.derivative(u)
+        out += at.normals + np.where(u > 0.5, 1.0, -1.0)[:, None] * unit_or_zero(np.asarray(along))
     if isinstance(sides[0], Surface):
         # across the edge, as the points beside an oblique one may lie far along it
-        edge = unit_or_zero(_slopes(sides[0], u, v, 1))
+        edge = unit_or_zero(np.asarray(sides[0].derivative(u, v, 0, 1)))
         out -= np.sum(out * edge, axis=-1, keepdims=True) * edge
     return unit_or_zero(out)
-
-
-def _slopes(side: Side, u: Reals, v: Reals, direction: int) -> Reals:
-    """Derivatives (m, d) of places on a side by u (0) or v (1)."""
-    if isinstance(side, Surface):
-        return np.asarray(side.derivative(u, v, 1 - direction, direction))
-    return np.asarray(side.derivative(u))

@@ -64,9 +64,9 @@ class Footpoints:
         return Footpoints(**{each.name: getattr(self, each.name)[rows] for each in fields(Footpoints)})
 
 
-def part_of(places: Reals, count: int) -> NDArray[np.intp]:
-    """Which of so many equal parts of [0, 1], from 0 on, places (n,) are in."""
-    return np.minimum((count * places).astype(np.intp), count - 1)
+def part_of(places: Reals, count: int, side: NDArray[np.intp] | int = 0) -> NDArray[np.intp]:
+    """Which of so many equal parts of [0, 1], from 0 on, places (n,) are in; those of side 1 come after those of 0."""
+    return side * count + np.minimum((count * places).astype(np.intp), count - 1)
 
 
 def concatenated(parts: Sequence[Footpoints]) -> Footpoints:

@@ -53,8 +53,7 @@ NOISE_CORRELATION = 0.15
 FAR_OFF = 3.0
 """rms misfit, in standard deviations by the median, beyond which it is no noise (design/matching_constants.md)"""
 EXACT_NOISE = 1e-5
-"""noise, of the chord, below which a cloud is exact: its largest error is half of `EXACT` (Tippett 1925;
-design/matching_constants.md)"""
+"""noise of an exact cloud, of the chord: errors reach half of `EXACT` (Tippett 1925; design/matching_constants.md)"""
 
 Progress = Callable[[str], None]
 """is handed a few words on what is done"""

@@ -349,7 +349,7 @@ def rows_shown(feet: Footpoints) -> int:
     """
     order = 4
     most = ROWS_PER_KNOT * (MOST_SPAN - order)
-    part = feet.side * CHORD_PARTS + part_of(feet.u, CHORD_PARTS)
+    part = part_of(feet.u, CHORD_PARTS, feet.side)
     rows = int(np.median([_apart(feet.v[part == number], 1.0 / most) for number in np.unique(part)]))
     filled = next((n for n in range(most, 1, -1) if len(np.unique(part_of(feet.v, n))) == n), 1)
     return min(rows - (rows > order), order + filled // ROWS_PER_KNOT)
