@@ -52,10 +52,7 @@ OTHER_BLADE, LEAST_SHARE = 5e-3, 0.7
 asked; and share of the points that must be (design/matching_constants.md)"""
 OTHER_BLADE_NOTE = "the cloud does not lie on the design's blade"
 """what a note begins with where the cloud is of another blade"""
-FREEDOMS = {
-    2: ("turn", "shift_x", "shift_y"),
-    3: ("turn_x", "turn_y", "turn_z", "shift_x", "shift_y", "shift_z"),
-}
+FREEDOMS = {2: ("turn", "shift_x", "shift_y"), 3: ("turn_x", "turn_y", "turn_z", "shift_x", "shift_y", "shift_z")}
 """degrees of freedom by dimension: right-handed turns about the machine's axes, then shifts along them"""
 TURN_AXES = {2: np.eye(3)[2:], 3: np.eye(3)}
 """(k, 3) axes of the turns by dimension"""
@@ -102,7 +99,7 @@ def _followed(points: Reals, motion: Motion, touching: Callable[[Reals], Contact
     for _ in range(MOST_STEPS):
         moved = motion(points)
         contact = touching(moved)
-        needed = max(_noise_width(contact), LEAST_WIDTH * extent)
+        needed = max(TUKEY_WIDTH * median_deviation(length(contact[0])), LEAST_WIDTH * extent)
         motion = _step(moved, contact, width, extent).after(motion)
         if width <= needed and np.max(np.abs(motion(points) - moved)) < LAST_STEP * needed:
             break
@@ -155,15 +152,12 @@ def _rough(points: Reals, samples: Footpoints, tree: cKDTree, motion: Motion, ex
     return float(np.mean(np.minimum(aside, FIRST_WIDTH * extent))), motion
 
 
-def _noise_width(contact: Contact) -> float:
-    """Width of the weights that the points' own distances call for."""
-    return TUKEY_WIDTH * median_deviation(length(contact[0]))
-
-
 def _equations(moved: Reals, contact: Contact, width: float, extent: float) -> tuple[Reals, Reals]:
     """Weighted rows (m, k) of what turns about the middle and shifts, as lengths, do to distances; right sides (m,)."""
     miss, rows, directions = contact
-    root = np.sqrt(tukey_weights(length(miss), max(width, _noise_width(contact))))[rows]
+    distances = length(miss)
+    # no narrower than the points' own distances call for
+    root = np.sqrt(tukey_weights(distances, max(width, TUKEY_WIDTH * median_deviation(distances))))[rows]
     rates = motion_rates(moved, np.mean(moved, axis=0))[rows] * motion_scale(moved.shape[1], extent)
     return np.einsum("md,mdk->mk", directions, rates) * root[:, None], -np.sum(directions * miss[rows], axis=1) * root
 

@@ -27,8 +27,7 @@ PARTS = 5
 COVERED_SHARE = 0.5
 """share of these parts that must have a point on the edge's arc, or it is uncovered (design/matching_constants.md)"""
 BARE_SHARE, BARE_GAPS = 0.1, 5.0
-"""gap between points around a section, of the chord, from which a blade is not shown there if it is so many usual ones
-(design/matching.md, design/matching_constants.md)"""
+"""gap between points, of the chord, and in usual gaps, from which a section is not shown there (design/matching.md)"""
 FREE_GAP = 0.1
 """share of such a gap beside its middle without points: rows may run across the blade's lines (design/matching.md)"""
 AT_EDGE = 0.01

@@ -216,9 +216,8 @@ def sliced_channel(machine: Reals, named: dict[str, Reals], *, revolved: bool) -
     # the place around the axis is smooth along the span; in extents, which may differ tenfold, it is not
     rows, around = law_basis(LAW_COUNT, v), machine[:, 2]
     place = np.linalg.lstsq(rows, around, rcond=None)[0]
-    plane = PlanePoints(
-        points=np.stack([channel.extents(v, u)[0], around - rows @ place], axis=-1) / extent[:, None], v=v
-    )
+    own = np.stack([channel.extents(v, u)[0], around - rows @ place], axis=-1)
+    plane = PlanePoints(points=own / extent[:, None], v=v)
     slices = slices_of(plane, chord_direction(plane), STATIONS, LAW_COUNT)
     camber = slices.camber.copy()
     camber[..., 1] += (law_basis(LAW_COUNT, STATIONS) @ place / channel.extents(STATIONS)[0])[:, None]
