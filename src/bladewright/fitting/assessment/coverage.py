@@ -71,12 +71,13 @@ class ShapeBands:
         return np.minimum(self.u, 1.0 - self.u) < BETWEEN_EDGES
 
 
-def loose_ends(match: Match) -> dict[str, float]:
+def loose_ends(match: Match, count: int) -> dict[str, float]:
     """The ends of a blade that no row of points shows, and how far past the outermost points they may be [m] (95 %).
 
     Empty for sections, and where the walls are held. The sides of a blade that goes on a little further are the same,
     so that without a row only its outermost points tell where it ends: to each free parameter of a wall, held ones that
-    the points do not determine among them, belongs its share of the points there.
+    the points do not determine among them, belongs its share of the points there. `count` is that of all points, of
+    which a match takes some.
     """
     if match.state.shape.exact is None:
         return {}
@@ -91,11 +92,12 @@ def loose_ends(match: Match) -> dict[str, float]:
         if wall is None or len(wall.places) <= len(free):
             loose[name] = chord
         elif wall.spread > max(EXACT * chord, ROW_SPREAD_OF_NOISE * match.noise_estimate.noise):
-            loose[name] = WIDTH_OVER_SPREAD * wall.spread * largest_gap(len(wall.places), len(free))
+            beside = len(wall.places) * count / len(match.rows)
+            loose[name] = WIDTH_OVER_SPREAD * wall.spread * largest_gap(beside, len(free))
     return loose
 
 
-def largest_gap(count: int, parts: int) -> float:
+def largest_gap(count: float, parts: int) -> float:
     """The largest gap past the outermost of evenly scattered values, of their width [-], that 95 % of clouds keep.
 
     Each of so many parts of a border has its share of the count of values; of m of them none lies in a gap g with the
