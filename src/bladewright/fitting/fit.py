@@ -23,7 +23,7 @@ from bladewright.fitting.assessment.measurement import Measurement, PlacesOfPoin
 from bladewright.fitting.assessment.result import Fit, Motion
 from bladewright.fitting.checks import check_positive, check_progress, reals, refusing
 from bladewright.fitting.clouds.cloud import checked_cloud, different_points, refuse_hidden_blade, refuse_several_blades
-from bladewright.fitting.clouds.thinning import MOST_POINTS, isolated_points, random_subset
+from bladewright.fitting.clouds.thinning import MOST_POINTS, isolated_points, random_subset, without_copies
 from bladewright.fitting.clouds.walls import walls_of
 from bladewright.fitting.families.blades import matched_blade
 from bladewright.fitting.families.kinds import FAMILIES, DesignHeader, FitFamily, family_of
@@ -255,9 +255,8 @@ def _check_call(
 
 def _rows_searched(points: Reals) -> NDArray[np.intp]:
     """Which of points (n, d) searches use: no more than they need, without those that stand alone."""
-    # where most points are copies, each place is taken once: copies share their noise, which would seem to be a misfit
-    _, first = np.unique(points, axis=0, return_index=True)
-    some = np.sort(first) if 2 * len(first) <= len(points) else np.arange(len(points))
+    # the noise that copies share would seem to be a misfit
+    some = without_copies(points)
     some = some[random_subset(len(some), MOST_POINTS)]
     places, back = np.unique(points[some], axis=0, return_inverse=True)
     return some[~isolated_points(places)[np.ravel(back)]]
