@@ -27,7 +27,7 @@ def ends_of(*rows, free="channel.leading_edge[*].r", noise=0.0):
     points += noise * draw.normal(size=points.shape)
     freedom = free_parameters_of(free, None, started=True)
     task = Task(points=points, weights=np.ones(len(points)), free=freedom, bounds={})
-    return loose_ends(searched(task, STATOR, rounds=1))
+    return loose_ends(searched(task, STATOR, rounds=1), len(points))
 
 
 @pytest.mark.parametrize(("rows", "loose"), [((0.0, 1.0), set()), ((0.0,), {"shroud"}), ((), {"hub", "shroud"})])
@@ -55,7 +55,7 @@ def test_a_row_of_no_more_points_than_its_curve_has_parameters_shows_no_end(free
     points = np.concatenate(parts)
     freedom = free_parameters_of(free, None, started=True)
     task = Task(points=points, weights=np.ones(len(points)), free=freedom, bounds={})
-    assert set(loose_ends(searched(task, design, rounds=0))) == loose
+    assert set(loose_ends(searched(task, design, rounds=0), len(points))) == loose
 
 
 @pytest.mark.slow
@@ -77,7 +77,9 @@ def test_an_end_whose_parameters_the_points_do_not_determine_is_no_better_known(
     points = np.concatenate([side(*draw.random((2, 200))) for side in sides])
     freedom = free_parameters_of(("channel.leading_edge[*].r", "channel.trailing_edge[*].r"), None, started=True)
     task = Task(points=points, weights=np.ones(len(points)), free=freedom, bounds={})
-    gaps = [
-        loose_ends(searched(each, STATOR, rounds=0)) for each in (task, task.holding(["channel.trailing_edge[1].r"]))
-    ]
+    tasks = task, task.holding(["channel.trailing_edge[1].r"])
+    gaps = [loose_ends(searched(each, STATOR, rounds=0), len(points)) for each in tasks]
     assert gaps[1] == pytest.approx(gaps[0])
+    # of a hundred times as many points the outermost are a hundred times nearer to an end
+    many = loose_ends(searched(task, STATOR, rounds=0), 100 * len(points))
+    assert all(50.0 < gaps[0][name] / gap < 200.0 for name, gap in many.items())

@@ -11,6 +11,7 @@ from scipy.stats import chi2
 import bladewright as bw
 from bladewright.errors import DesignError, FitError
 from bladewright.files.clouds import read_cloud
+from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching import search
@@ -353,3 +354,20 @@ def test_a_measured_vane_is_matched_with_22_parameters():
     # what was asked for; ParaBlade's own match with as many misses by 0.0398 mm
     assert found.mean < 2.7e-5
     assert isinstance(found.design, bw.UnifiedSection)
+
+
+def test_points_past_an_end_that_no_search_drew_bring_it_to_them(monkeypatch):
+    design, draw, count, few = example("vki-ls89"), np.random.default_rng(0), 1500, 750
+    for module in ("fit", "model_selection.selection"):
+        monkeypatch.setattr(f"bladewright.fitting.{module}.THOROUGH_POINTS", few)
+    u, v, side = draw.random(count), 0.05 + 0.95 * draw.random(count), np.arange(count) % 2
+    left_out = np.setdiff1d(np.arange(count), random_subset(count, few))[:40]
+    v[left_out] = np.linspace(0.0, 0.05, 40)
+    upper, lower = (surface(u, v) for surface in built(design).sides)
+    corners = [f"channel.{edge}[0].r" for edge in ("leading_edge", "trailing_edge")]
+    start = design.changed({corner: design.parameters()[corner] + 3.0 for corner in corners})
+    found = fit(np.where(side[:, None] == 0, upper, lower), start=start, free=corners)
+    assert found.passed
+    # the outermost points alone are 1e-3 off without them
+    assert found.maximum < 1e-6 * found.chord
+    assert all(abs(found.design.parameters()[corner]) < 0.15 for corner in corners)

@@ -45,6 +45,14 @@ def test_noise_is_found_and_is_not_taken_for_misfit(seed, dimension):
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
+def test_copies_of_points_tell_no_more_of_the_noise(dimension):
+    parts = made(0, dimension=dimension)
+    once, thrice = scattered(*parts), scattered(*(np.repeat(part, 3, axis=0) for part in parts))
+    assert (thrice.noise, thrice.correlation) == (once.noise, once.correlation)
+    np.testing.assert_array_equal(thrice.inliers, np.repeat(once.inliers, 3))
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
 def test_a_smooth_misfit_is_neither_noise_nor_outliers(dimension):
     found = scattered(*made(0, misfit=100.0 * NOISE, dimension=dimension))
     assert found.inliers.all()

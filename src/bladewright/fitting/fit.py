@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from functools import partial
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from bladewright.blade.design.row_design import LengthUnit, RowDesign
 from bladewright.blade.design.unified import UnifiedBlade
@@ -17,12 +17,12 @@ from bladewright.derivatives.patterns import Patterns
 from bladewright.designs import Design
 from bladewright.domain.row import turn_matrix
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.assessment.acceptance import Acceptance, MatchTarget
-from bladewright.fitting.assessment.measurement import PlacesOfPoints, measured, parameter_estimates
+from bladewright.fitting.assessment.acceptance import Acceptance, MatchTarget, trusted_distance
+from bladewright.fitting.assessment.measurement import Measurement, PlacesOfPoints, measured, parameter_estimates
 from bladewright.fitting.assessment.result import Fit, Motion
 from bladewright.fitting.checks import check_positive, check_progress, reals, refusing
 from bladewright.fitting.clouds.cloud import checked_cloud, different_points, refuse_hidden_blade, refuse_several_blades
-from bladewright.fitting.clouds.thinning import MOST_POINTS, isolated_points
+from bladewright.fitting.clouds.thinning import MOST_POINTS, isolated_points, random_subset, without_copies
 from bladewright.fitting.clouds.walls import walls_of
 from bladewright.fitting.families.blades import matched_blade
 from bladewright.fitting.families.kinds import FAMILIES, DesignHeader, FitFamily, family_of
@@ -30,8 +30,11 @@ from bladewright.fitting.families.sections import matched_section
 from bladewright.fitting.families.unified import matched_unified
 from bladewright.fitting.free_parameters import free_parameters_of, given_bounds
 from bladewright.fitting.initial_guess.blade import UPRIGHT, spans_along_y
+from bladewright.fitting.matching.footpoints import Footpoints
 from bladewright.fitting.matching.noise import EXACT
 from bladewright.fitting.matching.search import Match, Progress, Task
+from bladewright.fitting.model_selection.selection import THOROUGH_POINTS, with_points_left_out
+from bladewright.fitting.model_selection.structure_search import NEAR_RICH
 from bladewright.fitting.placing import (
     UPRIGHT_NOTE,
     Matched,
@@ -155,22 +158,22 @@ def fit(
         found, built, reason = matched(turns[0])
         if align and start is not None:
             found, built, reason = realigned(turns, (found, built, reason), place, matched)
-        here = turns[-1]
+        outcome = _outcome(turned_with(turns[-1], found), found, built, finishing)
+        outcome = _with_points_left_out(outcome, target)
     except KeyboardInterrupt:
         nearest = nearest_of(turns, MOST_POINTS)
         if nearest is None:
             raise
         here, found, built = nearest
+        outcome = _outcome(turned_with(here, found), found, built, finishing)
         reason = INTERRUPTED_NOTE if points.shape[1] == 3 else ""
-        if len(here.every.points) < len(points):
+        if len(outcome.here.every.points) < len(points):
             notes = (*notes, f"measured by {MOST_POINTS} of {len(points)} points, drawn at random")
     except DesignError as error:
         raise FitError(f"no design of the family was found near the points ({error}): {WHOLE_BLADE_HINT}") from error
-    here = turned_with(here, found)
-    if not given and header.arrangement is None and getattr(found.design, "arrangement", "") == "linear":
+    if not given and header.arrangement is None and getattr(outcome.design, "arrangement", "") == "linear":
         notes = (*notes, CASCADE_NOTE)
-    notes = (*notes, *here.notes, *([reason] if reason else []))
-    return _reported(found, built, here, target, notes, finishing)
+    return _reported(outcome, target, (*notes, *outcome.here.notes, *filter(None, [reason])))
 
 
 def _ways_of(
@@ -245,20 +248,20 @@ def _check_call(
         raise FitError(f"parameters is {count!r}: a whole number from {least} to 2000 is needed")
 
 
-def _searched_for(task: Task) -> Task:
-    """The task with no more points than searches use, without those that stand alone."""
-    # where most points are copies, each place is taken once: copies share their noise, which would seem to be a misfit
-    _, first = np.unique(task.points, axis=0, return_index=True)
-    some = (task.part(np.sort(first)) if 2 * len(first) <= len(task.points) else task).thinned(MOST_POINTS)
-    places, back = np.unique(some.points, axis=0, return_inverse=True)
-    return some.part(np.flatnonzero(~isolated_points(places)[np.ravel(back)]))
+def _rows_searched(points: Reals) -> NDArray[np.intp]:
+    """Which of points (n, d) searches use: no more than they need, without those that stand alone."""
+    # the noise that copies share would seem to be a misfit
+    some = without_copies(points)
+    some = some[random_subset(len(some), MOST_POINTS)]
+    places, back = np.unique(points[some], axis=0, return_inverse=True)
+    return some[~isolated_points(places)[np.ravel(back)]]
 
 
 def _matched(
     here: PlacedTask, *, kind: FitFamily | None, like: Design | None, header: DesignHeader, target: MatchTarget
 ) -> Matched:
     """The match of a family, what it builds, and why it ends where no target is met."""
-    task, start = _searched_for(here.shown), here.start
+    task, start = here.shown.part(_rows_searched(here.shown.points)), here.start
     if kind is None:
         return matched_unified(task, start, like, header, target)
     first = None if start is None else task.free.applied(start)
@@ -280,37 +283,92 @@ def _weights(weights: ArrayLike, points: Reals) -> Reals:
     return found * (count / np.sum(found))
 
 
-def _reported(
-    match: Match, plain: Any, here: PlacedTask, target: MatchTarget, notes: tuple[str, ...], finishing: RowDesign | None
-) -> Fit:
-    task, failures = here.every, list[str]()
-    task.progress("measuring")
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Outcome:
+    """A match, what it builds with cuts and fillets, and all points measured against it."""
+
+    here: PlacedTask
+    match: Match
+    plain: Any
+    design: Design
+    built: Any
+    finishing: RowDesign | None
+    failures: tuple[str, ...]
+    measurement: Measurement
+
+    @property
+    def largest(self) -> float:
+        """Largest distance of an inlier [m]."""
+        return float(np.max(self.measurement.distances[self.measurement.inliers]))
+
+
+def _outcome(
+    here: PlacedTask, match: Match, plain: Any, finishing: RowDesign | None, hint: Footpoints | None = None
+) -> _Outcome:
+    every, failures = here.every, tuple[str, ...]()
+    every.progress("measuring")
     design, built = match.design, plain
     if finishing is not None:
         try:
             whole = finished(match.design, finishing)
             built, design = whole.build(), whole
         except DesignError as error:
-            failures.append(f"what is found cannot be cut or filleted as is given, and is left without: {error}")
-    measurement = measured(task.points, plain, task.precision, hidden=here.hidden, finished=built)
+            failures = (f"what is found cannot be cut or filleted as is given, and is left without: {error}",)
+    return _Outcome(
+        here=here,
+        match=match,
+        plain=plain,
+        design=design,
+        built=built,
+        finishing=finishing,
+        failures=failures,
+        measurement=measured(every.points, plain, every.precision, hidden=here.hidden, finished=built, hint=hint),
+    )
+
+
+def _with_points_left_out(outcome: _Outcome, target: MatchTarget) -> _Outcome:
+    """The outcome with those points searched too that were not drawn and lie further off than is trusted or asked.
+
+    Corners and ends may be beside them alone.
+    """
+    here, match, measurement = outcome.here, outcome.match, outcome.measurement
+    limit = target.tolerance or max(trusted_distance(match), NEAR_RICH * match.maximum)
+    far = measurement.inliers & (measurement.distances > limit)
+    shown = np.flatnonzero(here.hidden == "") if here.hidden is not None else np.arange(len(far))
+    task, missed = here.shown.turned(match.turn), np.flatnonzero(far[shown])
+    if match.interrupted or len(missed) == 0 or len(shown) <= THOROUGH_POINTS:
+        return outcome
+    rows = _rows_searched(here.shown.points)
+    drawn = rows[random_subset(len(rows), THOROUGH_POINTS)]
+    trusted = np.isin(np.arange(len(shown)), missed)
+    more = replace(task, trusted=trusted).part(np.union1d(drawn, missed))
+    found = with_points_left_out(more, match, target)
+    if found is match:
+        return outcome
+    again = _outcome(here, found, found.design.build(), outcome.finishing, measurement.footpoints)
+    return min(outcome, again, key=lambda each: each.largest)
+
+
+def _reported(outcome: _Outcome, target: MatchTarget, notes: tuple[str, ...]) -> Fit:
+    match, measurement = outcome.match, outcome.measurement
     statistics = parameter_estimates(match)
     acceptance = Acceptance(match=match, measurement=measurement, statistics=statistics, target=target)
     try:
-        extrema = extrema_of(plain)
+        extrema = extrema_of(outcome.plain)
     except DesignError:
         # sections that end a search on the way cannot be drawn
         extrema = {}
     return Fit(
-        design=design,
-        built=built,
-        cloud=task.points,
+        design=outcome.design,
+        built=outcome.built,
+        cloud=outcome.here.every.points,
         **{each.name: getattr(measurement, each.name) for each in fields(PlacesOfPoints)},
         **vars(statistics),
         extrema=extrema,
         tolerance=target.tolerance,
-        failures=(*acceptance.failures(), *failures),
+        failures=(*acceptance.failures(), *outcome.failures),
         notes=(*notes, *acceptance.notes()),
         evaluations=match.evaluations,
-        motion=here.motion,
+        motion=outcome.here.motion,
         interrupted=match.interrupted,
     )

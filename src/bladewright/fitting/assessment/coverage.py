@@ -52,11 +52,12 @@ NORMAL_95 = float(ndtri((1.0 + CONFIDENCE) / 2.0))
 """standard deviations to either side within which 95 % of normal errors are"""
 
 
-def loose_ends(match: Match) -> dict[str, float]:
+def loose_ends(match: Match, count: int) -> dict[str, float]:
     """The ends of a blade that no row of points shows, and how far past the outermost points they may be [m] (95 %).
 
     Empty for sections, and where the walls are held. Sides of a blade that goes on are the same, so that its outermost
-    points alone tell its end: to each free or undetermined parameter of a wall belongs its share of them.
+    points alone tell its end: to each free or undetermined parameter of a wall belongs its share of them. `count` is
+    that of all points, of which a match takes some.
     """
     if match.state.shape.exact is None:
         return {}
@@ -71,11 +72,12 @@ def loose_ends(match: Match) -> dict[str, float]:
         if wall is None or len(wall.places) <= len(free):
             loose[name] = chord
         elif wall.spread > max(EXACT * chord, ROW_SPREAD_OF_NOISE * match.noise_estimate.noise):
-            loose[name] = WIDTH_OVER_SPREAD * wall.spread * largest_gap(len(wall.places), len(free))
+            beside = len(wall.places) * count / len(match.rows)
+            loose[name] = WIDTH_OVER_SPREAD * wall.spread * largest_gap(beside, len(free))
     return loose
 
 
-def largest_gap(count: int, parts: int) -> float:
+def largest_gap(count: float, parts: int) -> float:
     """The largest gap past the outermost of evenly scattered values, of their width [-], that 95 % of clouds keep.
 
     Each of so many parts of a border has its share of the count of values; of m of them none lies in a gap g with the

@@ -78,17 +78,18 @@ def measured(
     *,
     hidden: NDArray[np.str_] | None = None,
     finished: Blade | None = None,
+    hint: Footpoints | None = None,
 ) -> Measurement:
     """Every point's nearest place and signed distance on a blade or section, before cuts and fillets.
 
     `precision` (n,) are inverse variances of the points, relative to each other. Where `hidden` (n,) is not
     empty, points off the sides are set aside: on a `wall` or a `fillet` beside the blade, or on the faces of cuts and
     fillets that the `finished` blade has, where they are nearer to these. So are points of the end faces, which are
-    outliers to the sides.
+    outliers to the sides. A `hint` are the footpoints on a blade that is hardly another one.
     """
     sides = sides_of(built)
     exact = built.exact if isinstance(built, Blade) else None
-    footpoints = nearest_footpoints(points, sides, converged=LAST_STEP)
+    footpoints = nearest_footpoints(points, sides, hint, converged=LAST_STEP)
     # the longest name is "cut trailing edge"
     set_aside, off = np.full(len(points), "", dtype="<U20"), footpoints.distances
     if hidden is not None and finished is not None and np.any(hidden != ""):

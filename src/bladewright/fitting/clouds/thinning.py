@@ -1,4 +1,4 @@
-"""Fewer points of a cloud: drawn at random, spread evenly, or without those that stand alone; and groups of them."""
+"""Fewer points of a cloud: drawn at random, spread evenly, without copies or those that stand alone; and groups."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,6 +46,14 @@ def _cells(places: Reals, halvings: float) -> tuple[NDArray[np.intp], Reals]:
     corner = np.floor(places * count)
     keys = corner.astype(np.intp) @ (count + 1) ** np.arange(places.shape[1])
     return keys, np.sum((places * count - corner - 0.5) ** 2, axis=1)
+
+
+def without_copies(points: Reals) -> NDArray[np.intp]:
+    """Indices, in order, of points (n, d), each place once where most are copies: these share their noise."""
+    if 2 * len(np.unique(points[:, 0])) > len(points):
+        return np.arange(len(points), dtype=np.intp)
+    _, first = np.unique(points, axis=0, return_index=True)
+    return np.sort(first) if 2 * len(first) <= len(points) else np.arange(len(points), dtype=np.intp)
 
 
 def groups(linked: NDArray[np.bool_], index: NDArray[np.intp]) -> NDArray[np.intp]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 from scipy.special import bdtrc, ndtri
 
-from bladewright.fitting.clouds.thinning import MOST_POINTS, even_subset, groups, random_subset
+from bladewright.fitting.clouds.thinning import MOST_POINTS, even_subset, groups, random_subset, without_copies
 from bladewright.fitting.matching.footpoints import BETWEEN_EDGES, EDGE_PARAMETERS, Footpoints
 from bladewright.numerics.robust import DEVIATION_OVER_MEDIAN, median_deviation
 from bladewright.nurbs.basis import Reals
@@ -233,6 +233,7 @@ def noise_of(
     rows = np.flatnonzero(weights > 0.0)
     if len(rows) == len(points):
         rows = random_subset(len(points), MOST_POINTS)
+    rows = rows[without_copies(points[rows])]
     if len(rows) < len(points):
         return _noise_of_some(points, footpoints, weights, rows, trusted)
     weights = weights / np.mean(weights)

@@ -22,7 +22,7 @@ from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import GROSS_DEVIATION, NEAR_EVERYWHERE, MatchTarget, trusted_distance
 from bladewright.fitting.assessment.measurement import undetermined_parameters
-from bladewright.fitting.free_parameters import corner_radii
+from bladewright.fitting.free_parameters import FreeParameters, corner_radii
 from bladewright.fitting.matching.footpoints import Side, nearest_footpoints
 from bladewright.fitting.matching.residuals import PlacedCloud
 from bladewright.fitting.matching.search import (
@@ -120,12 +120,8 @@ def reduced_match(begun: RichMatch, target: MatchTarget) -> tuple[Match, str]:
         return rich, begun.note
     if target.tolerance is not None:
         found, reason = search.within(rich, target.tolerance)
-        if len(many.points) > len(search.task.points):
-            found = evaluated(many, found.design, noise=found.rms)
-            if found.maximum > target.tolerance:
-                weights = reweighted(many.weights, found.state.footpoints.distances, target.tolerance)
-                found = nearest_to_tolerance(many, found, weights, target.tolerance)
-        return found, reason
+        more = len(many.points) > len(search.task.points)
+        return _reweighted_further(many, found, target.tolerance) if more else found, reason
     if target.parameters is not None:
         sized = search.of_size(rich, target.parameters)
         fitting = sized if len(sized.problem.paths) <= target.parameters else begun.first
@@ -140,6 +136,27 @@ def reduced_match(begun: RichMatch, target: MatchTarget) -> tuple[Match, str]:
         within, _ = search.within(rich, ENOUGH * rich.model.chord)
         last, note = min((last, note), determined(many, within), key=lambda each: each[0].maximum)
     return last, note
+
+
+def with_points_left_out(task: Task, match: Match, target: MatchTarget) -> Match:
+    """A match searched on with points that its own search left out, the structure and what is held its own.
+
+    It is the exchange method of semi-infinite problems (Hettich and Kortanek 1993, section 7), an exchange only.
+    """
+    more = replace(task, free=FreeParameters(free=match.problem.paths), held=match.held)
+    if target.tolerance is None:
+        return _searched_further(more, match)
+    found = _reweighted_further(more, match, target.tolerance)
+    return found if found.can_be_built else match
+
+
+def _reweighted_further(task: Task, match: Match, tolerance: float) -> Match:
+    """A match of more points, brought nearer to a tolerance [m] where these exceed it."""
+    found = evaluated(task, match.design, noise=match.rms)
+    if found.maximum <= tolerance:
+        return found
+    weights = reweighted(task.weights, found.state.footpoints.distances, tolerance)
+    return nearest_to_tolerance(task, found, weights, tolerance)
 
 
 def _searched_further(task: Task, match: Match) -> Match:
