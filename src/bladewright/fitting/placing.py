@@ -27,6 +27,7 @@ from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.clouds.walls import Walls
 from bladewright.fitting.free_parameters import EDGES, WALLS, FreeParameters
 from bladewright.fitting.matching.noise import EXACT
+from bladewright.fitting.matching.residuals import MERIDIANS
 from bladewright.fitting.matching.search import QUICK_ROUNDS, ROUGH_REDUCTION, Match, Task, searched
 from bladewright.fitting.model_selection.selection import QUICK_POINTS
 from bladewright.fitting.registration import OTHER_BLADE_NOTE, WEAKEST_FREEDOM, motion_by, motion_rates, motion_scale
@@ -126,7 +127,10 @@ def placed_nearest(ways: Ways, start: Design | None, place: Place) -> PlacedTask
         for motion, notes in ways:
             with suppress(FitError):
                 here = place(motion, start, notes)
-                few = here.shown.thinned(QUICK_POINTS)
+                # rows at the ends of a blade that lies wrong would draw its walls to others
+                free = here.shown.free(start)
+                curves = [path for path in free if path.startswith(MERIDIANS)]
+                few = here.shown.thinned(QUICK_POINTS).without(curves if len(curves) < len(free) else ())
                 match = searched(few, start, rounds=QUICK_ROUNDS, min_reduction=ROUGH_REDUCTION)
                 found.append((match.mean_distance, here))
     motion, notes = ways[0]

@@ -134,7 +134,7 @@ class Acceptance:
 
     @cached_property
     def _loose_ends(self) -> dict[str, float]:
-        return coverage.loose_ends(self.match, len(self.measurement.distances))
+        return coverage.loose_ends(self.match, self.measurement.footpoints.part(self.measurement.inliers))
 
     @cached_property
     def _uncovered_edges(self) -> dict[str, tuple[float, float]]:

@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.special import fdtri, ndtri
 
+from bladewright.blade.native.cut_lines import in_meridian
 from bladewright.fitting.assessment.measurement import shape_covariance
 from bladewright.fitting.free_parameters import parameters_of_curve
-from bladewright.fitting.matching.blade_ends import END_PARAMETERS
+from bladewright.fitting.matching.blade_ends import END_PARAMETERS, FACE_BAND, WallPoints
 from bladewright.fitting.matching.footpoints import BETWEEN_EDGES, EDGE_PARAMETERS, Footpoints, footpoints_at, part_of
 from bladewright.fitting.matching.noise import EXACT, SIGNIFICANCE
 from bladewright.fitting.matching.search import Match
@@ -52,18 +53,20 @@ NORMAL_95 = float(ndtri((1.0 + CONFIDENCE) / 2.0))
 """standard deviations to either side within which 95 % of normal errors are"""
 
 
-def loose_ends(match: Match, count: int) -> dict[str, float]:
-    """The ends of a blade that no row of points shows, and how far past the outermost points they may be [m] (95 %).
+def loose_ends(match: Match, feet: Footpoints) -> dict[str, float]:
+    """The ends of a blade that no row of points shows, and how well they are known [m] (95 %).
 
     Empty for sections, and where the walls are held. Sides of a blade that goes on are the same, so that its outermost
-    points alone tell its end: to each free or undetermined parameter of a wall belongs its share of them. `count` is
-    that of all points, of which a match takes some.
+    points alone tell its end, which may lie as far past them as the largest gap between them is wide, or as the wall
+    found does: to each free or undetermined parameter of a wall belongs its share of them. `feet` (n,) are the
+    footpoints of all inliers, of which a match takes some.
     """
-    if match.state.shape.exact is None:
+    exact = match.state.shape.exact
+    if exact is None:
         return {}
     chord, walls = match.model.chord, match.ends.walls
     loose = {}
-    for name in END_PARAMETERS:
+    for name, end in END_PARAMETERS.items():
         wall = walls.get(name)
         free = parameters_of_curve(match.design, name) & {*match.problem.paths, *match.held}
         if not free:
@@ -72,8 +75,15 @@ def loose_ends(match: Match, count: int) -> dict[str, float]:
         if wall is None or len(wall.places) <= len(free):
             loose[name] = chord
         elif wall.spread > max(EXACT * chord, ROW_SPREAD_OF_NOISE * match.noise_estimate.noise):
-            beside = len(wall.places) * count / len(match.rows)
-            loose[name] = WIDTH_OVER_SPREAD * wall.spread * largest_gap(beside, len(free))
+            count = len(wall.places) * len(feet.u) / np.count_nonzero(match.rows)
+            gap = WIDTH_OVER_SPREAD * wall.spread * largest_gap(count, len(free))
+            beside = feet.part(np.abs(feet.v - end) < FACE_BAND)
+            places = in_meridian(beside.points + beside.miss, exact.mapping.revolved)
+            t, _, above = WallPoints(name=name, places=places).located(exact)
+            least = np.full(len(free), -np.inf)
+            np.maximum.at(least, part_of(np.clip(t, 0.0, 1.0), len(free)), above if end else -above)
+            past = -least[np.isfinite(least)]
+            loose[name] = max(gap, float(np.max(past, initial=0.0)))
     return loose
 
 

@@ -167,7 +167,7 @@ def _outermost(footpoints: Footpoints, rows: NDArray[np.bool_], end: float) -> N
     away, part = np.abs(footpoints.v - end), part_of(footpoints.u, ROW_PARTS)
     least = np.full(ROW_PARTS, np.inf)
     np.minimum.at(least, part[rows], away[rows])
-    slid = np.where(np.mean(least < ROW_BAND) > ROW_SHARE, least, 0.0)[part]
+    slid = np.where(np.mean(least < FACE_BAND) > ROW_SHARE, least, 0.0)[part]
     return rows & (away < np.where(slid < FACE_BAND, slid, 0.0) + ROW_BAND)
 
 
