@@ -10,6 +10,7 @@ import pytest
 from bladewright.designs import Point
 from bladewright.fitting.matching.blade_ends import blade_ends_of, edge_overhang_of, outward_at_edges
 from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footpoints
+from bladewright.fitting.matching.search import Task, evaluated
 from bladewright.fitting.models.model import model_of
 from machines import example
 
@@ -142,6 +143,15 @@ def test_a_corner_that_has_slid_past_its_row_is_still_shown_by_it():
 def test_without_points_at_the_ends_there_are_no_walls():
     found, _ = ends(BLADE, sides_cloud(BLADE, 200))
     assert not found.walls
+
+
+def test_where_nobody_says_where_a_blade_ends_its_outermost_points_do():
+    design, points = example(BLADE), sides_cloud(BLADE, 2000)
+    task = Task(points=points, weights=np.ones(len(points)))
+    assert not evaluated(task, design, noise=1e-3).ends.walls
+    # the walls of an outline are its points' own
+    guessed = replace(task, outline=(points[:, :2],))
+    assert set(evaluated(guessed, design, noise=1e-3).ends.walls) == {"hub", "shroud"}
 
 
 def test_points_past_an_end_are_near_it():

@@ -102,6 +102,27 @@ def test_of_ways_about_as_near_the_one_is_taken_that_the_shape_follows_best():
     assert placed_nearest([(over, ("over",))], off, place).notes == ("over",)
 
 
+def test_motions_are_compared_with_the_walls_and_edges_of_a_start(monkeypatch):
+    """Rows of points of a blade that lies wrong drew its shroud to the row beside its own: the right way seemed off."""
+    design, freed = example("aachen-stator"), list[set[str]]()
+
+    def searched_with(task, start, **_):
+        freed.append(set(task.free(start)))
+        raise FitError
+
+    def place(motion, start, notes):
+        task = Task(points=points, weights=np.ones(len(points)), free=free)
+        return PlacedTask(motion=motion, notes=notes, start=start, every=task, shown=task, hidden=None)
+
+    monkeypatch.setattr("bladewright.fitting.placing.searched", searched_with)
+    points = np.concatenate([side(*np.random.default_rng(0).random((2, 20))) for side in design.build().sides])
+    for given, curves in ((None, False), (("channel.leading_edge[*].r",), True)):
+        free = free_parameters_of(given, None, started=True)
+        placed_nearest([(None, ("one",)), (None, ("other",))], design, place)
+        assert any(path.startswith("channel.") for path in freed[-1]) is curves
+        assert freed[-1]
+
+
 @pytest.mark.slow
 def test_a_mirrored_blade_is_told_from_the_design():
     points = cloud("radial-turbine", 800) * np.array([1.0, -1.0, 1.0])

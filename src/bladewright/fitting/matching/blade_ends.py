@@ -122,9 +122,17 @@ class BladeEnds:
 
 
 def blade_ends_of(
-    points: Reals, footpoints: Footpoints, shape: ModelShape, rows: NDArray[np.bool_], beside: Sequence[Reals] = ()
+    points: Reals,
+    footpoints: Footpoints,
+    shape: ModelShape,
+    rows: NDArray[np.bool_],
+    beside: Sequence[Reals] = (),
+    reach: float = ROW_BAND,
 ) -> BladeEnds:
-    """The ends as points (n, d) show them, of those in `rows` (n,), and places (m, 2) of walls `beside` the blade."""
+    """The ends as points (n, d) show them, of those in `rows` (n,), and places (m, 2) of walls `beside` the blade.
+
+    Most parts of the chord must have points within `reach` of an end, in v.
+    """
     on_end_face = np.zeros(len(points), dtype=bool)
     exact = shape.exact
     if exact is None:
@@ -147,7 +155,7 @@ def blade_ends_of(
         thickness = shape.thickness(np.linspace(0.1, 0.9, 9), end)
         if np.max(-footpoints.heights[face], initial=0.0) > 0.5 * DEEPEST_FACE_POINT * thickness:
             on_end_face[face] = True
-        chosen = np.flatnonzero(_outermost(footpoints, rows & ~on_end_face, end) | (on_end_face & beside_end))
+        chosen = np.flatnonzero(_outermost(footpoints, rows & ~on_end_face, end, reach) | (on_end_face & beside_end))
         if len(chosen) < FEWEST_ROW_POINTS:
             continue
         aside = _off_row(WallPoints(name=name, places=places[chosen]), exact)
@@ -160,14 +168,14 @@ def blade_ends_of(
     return BladeEnds(walls=walls, on_end_face=on_end_face, near=near)
 
 
-def _outermost(footpoints: Footpoints, rows: NDArray[np.bool_], end: float) -> NDArray[np.bool_]:
-    """Which of n points, of those in `rows` (n,), may belong to the row at an end."""
+def _outermost(footpoints: Footpoints, rows: NDArray[np.bool_], end: float, reach: float) -> NDArray[np.bool_]:
+    """Which of n points, of those in `rows` (n,), may belong to the row at an end, shown within `reach` of it."""
     # where most parts of the chord show the end, the row is the points beside the outermost of each part: a corner that
     # has slid past its points is far from its row
     away, part = np.abs(footpoints.v - end), part_of(footpoints.u, ROW_PARTS)
     least = np.full(ROW_PARTS, np.inf)
     np.minimum.at(least, part[rows], away[rows])
-    slid = np.where(np.mean(least < FACE_BAND) > ROW_SHARE, least, 0.0)[part]
+    slid = np.where(np.mean(least < reach) > ROW_SHARE, least, 0.0)[part]
     return rows & (away < np.where(slid < FACE_BAND, slid, 0.0) + ROW_BAND)
 
 

@@ -18,7 +18,7 @@ from bladewright.errors import DesignError, FitError
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.free_parameters import FreeParameters, scales_of
 from bladewright.fitting.matching.best_so_far import BestSoFar
-from bladewright.fitting.matching.blade_ends import BladeEnds, blade_ends_of, edge_overhang_of
+from bladewright.fitting.matching.blade_ends import FACE_BAND, ROW_BAND, BladeEnds, blade_ends_of, edge_overhang_of
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.noise import EXACT, NoiseEstimate, doubted_outliers, noise_of
 from bladewright.fitting.matching.residuals import CloudResiduals, MatchProblem, PlacedCloud, regularisation_of
@@ -278,7 +278,9 @@ def evaluated(task: Task, design: Design, *, noise: float | None, before: Match 
     trusted = task.trusted if task.allow_outliers else np.ones(len(points), dtype=bool)
     noise_estimate = noise_of(points, footpoints, task.precision, trusted=trusted)
     walls = task.walls or (task.outline if task.preliminary else ())
-    ends = blade_ends_of(points, footpoints, shape, noise_estimate.inliers, walls)
+    # where a blade ends that nobody has given, its points alone say
+    reach = FACE_BAND if task.outline or task.free.walls else ROW_BAND
+    ends = blade_ends_of(points, footpoints, shape, noise_estimate.inliers, walls, reach)
     rows = noise_estimate.inliers & ~ends.on_end_face
     if noise is None:
         noise = float(np.sqrt(np.mean(footpoints.distances[rows] ** 2))) / model.chord
