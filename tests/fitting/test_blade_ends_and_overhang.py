@@ -105,6 +105,19 @@ def test_a_row_is_found_where_the_control_points_of_its_wall_crowd(name):
     assert wall.spread < 1e-6 * model.chord
 
 
+def test_places_of_two_rows_are_no_row_of_their_own():
+    """A tip row of 15 mm and ends of the row 38 mm below were met to 1e-10 m by lines across both."""
+    design = example("propeller")
+    points = matching_clouds.rows(design.build().sides)
+    wrong = tuple(Point(*place) for place in [(-4.03, 954.3), (0.7, 947.7), (3.58, 947.83), (7.86, 952.68)])
+    found = replace(design, channel=replace(design.channel, shroud=wrong))
+    other = model_of(found).shape(found)
+    ends = blade_ends_of(points, nearest_footpoints(points, other.sides), other, np.ones(len(points), dtype=bool))
+    wall = ends.walls["shroud"]
+    assert np.ptp(wall.places[:, 1]) > 0.03
+    assert wall.spread > 1e-5
+
+
 @pytest.mark.parametrize("places", [[0.5], [0.3, 0.5, 0.6], [0.5] * 12])
 def test_a_wall_of_few_places_beside_the_blade_is_one_all_the_same(places):
     _, _, there = shape(BLADE)
