@@ -278,8 +278,8 @@ def evaluated(task: Task, design: Design, *, noise: float | None, before: Match 
     trusted = task.trusted if task.allow_outliers else np.ones(len(points), dtype=bool)
     noise_estimate = noise_of(points, footpoints, task.precision, trusted=trusted)
     walls = task.walls or (task.outline if task.preliminary else ())
-    # where a blade ends that nobody has given, its points alone say
-    reach = FACE_BAND if task.outline or task.free.walls else ROW_BAND
+    # of a blade that nobody has given the outline of the points is the end
+    reach = FACE_BAND if task.outline else ROW_BAND
     ends = blade_ends_of(points, footpoints, shape, noise_estimate.inliers, walls, reach)
     rows = noise_estimate.inliers & ~ends.on_end_face
     if noise is None:
