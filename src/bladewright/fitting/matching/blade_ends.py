@@ -20,7 +20,7 @@ from bladewright.fitting.matching.footpoints import (
     unit_or_zero,
 )
 from bladewright.fitting.models.model import ModelShape, stepped_rates
-from bladewright.numerics.elementary import turned_left, unit
+from bladewright.numerics.elementary import turned_left
 from bladewright.numerics.robust import median_deviation
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.surface import Surface
@@ -199,15 +199,17 @@ def _off_row(wall: WallPoints, exact: ExactBlade) -> Reals:
 
     Where that leaves a hundred times as much, from a row of its own: a wall that is not found yet may be no smooth one.
     """
-    t, _, distances = wall.located(exact)
+    t, normals, distances = wall.located(exact)
     inward = 1.0 if wall.name == "hub" else -1.0
     by_wall = _off_law(2.0 * t - 1.0, distances, inward, ROW_DEGREE)
+    about = wall.places - np.mean(wall.places, axis=0)
+    axes = np.linalg.eigh(about.T @ about)[1].T
     # along the wall: across it, rows beside each other seem to be one
     first, last = np.real(exact.wall(wall.name).values(np.array([0.0, 1.0])))
-    line, about = unit(last - first), wall.places - np.mean(wall.places, axis=0)
-    way = about @ line
+    across, line = axes[np.argsort(np.abs(axes @ (last - first)))]
+    way, off = about @ line, about @ across
     along = way / max(float(np.max(np.abs(way))), 1e-300)
-    alone = _off_law(along, about @ turned_left(line), inward, OWN_DEGREE)
+    alone = _off_law(along, off, inward * float(np.sign(np.sum(normals @ across))), OWN_DEGREE)
     return alone if np.median(alone) < CLEARLY_ALONE * np.median(by_wall) else by_wall
 
 
