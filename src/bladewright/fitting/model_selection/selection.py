@@ -119,9 +119,7 @@ def reduced_match(begun: RichMatch, target: MatchTarget) -> tuple[Match, str]:
     if search is None:
         return rich, begun.note
     if target.tolerance is not None:
-        found, reason = search.within(rich, target.tolerance)
-        more = len(many.points) > len(search.task.points)
-        return _reweighted_further(many, found, target.tolerance) if more else found, reason
+        return _within(rich, search, many, target.tolerance)
     if target.parameters is not None:
         sized = search.of_size(rich, target.parameters)
         fitting = sized if len(sized.problem.paths) <= target.parameters else begun.first
@@ -136,6 +134,19 @@ def reduced_match(begun: RichMatch, target: MatchTarget) -> tuple[Match, str]:
         within, _ = search.within(rich, ENOUGH * rich.model.chord)
         last, note = min((last, note), determined(many, within), key=lambda each: each[0].maximum)
     return last, note
+
+
+def _within(rich: Match, search: StructureSearch, many: Task, tolerance: float) -> tuple[Match, str]:
+    """The match of fewest parameters found that keeps a tolerance [m] at many points; the nearest, and why, else."""
+    found, reason = search.within(rich, tolerance)
+    if len(many.points) <= len(search.task.points):
+        return found, reason
+    whole = _reweighted_further(many, found, tolerance)
+    if whole.maximum > tolerance and not reason:
+        # others than those searched exceed it: these are to be met as much nearer
+        nearer, _ = search.within(rich, tolerance**2 / whole.maximum)
+        whole = min(whole, _reweighted_further(many, nearer, tolerance), key=lambda each: each.maximum)
+    return whole, reason
 
 
 def with_points_left_out(task: Task, match: Match, target: MatchTarget) -> Match:
