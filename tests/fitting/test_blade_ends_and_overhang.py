@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from bladewright.designs import Point
-from bladewright.fitting.matching.blade_ends import blade_ends_of, edge_overhang_of, outward_at_edges
+from bladewright.fitting.matching import blade_ends
+from bladewright.fitting.matching.blade_ends import WallPoints, blade_ends_of, edge_overhang_of, outward_at_edges
 from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footpoints
 from bladewright.fitting.matching.search import Task, evaluated
 from bladewright.fitting.models.model import model_of
@@ -105,17 +106,29 @@ def test_a_row_is_found_where_the_control_points_of_its_wall_crowd(name):
     assert wall.spread < 1e-6 * model.chord
 
 
-def test_places_of_two_rows_are_no_row_of_their_own():
-    """A tip row of 15 mm and ends of the row 38 mm below were met to 1e-10 m by lines across both."""
+def test_ends_of_another_row_are_none_of_the_outermost():
+    """A tip row and the ends of a row 38 mm below were met to 1e-10 m by a line across both."""
     design = example("propeller")
     points = matching_clouds.rows(design.build().sides)
     wrong = tuple(Point(*place) for place in [(-4.03, 954.3), (0.7, 947.7), (3.58, 947.83), (7.86, 952.68)])
     found = replace(design, channel=replace(design.channel, shroud=wrong))
     other = model_of(found).shape(found)
     ends = blade_ends_of(points, nearest_footpoints(points, other.sides), other, np.ones(len(points), dtype=bool))
-    wall = ends.walls["shroud"]
-    assert np.ptp(wall.places[:, 1]) > 0.03
-    assert wall.spread > 1e-5
+    tip = np.max(np.hypot(*points[:, 1:].T))
+    assert len(ends.walls["shroud"].places) == 160
+    assert np.min(ends.walls["shroud"].places[:, 1]) > 0.999 * tip
+
+
+def test_places_past_a_wall_s_continuation_are_off_it():
+    """Its last normal leads past them, along which they were near."""
+    exact = shape(BLADE)[2].exact
+    wall, t = exact.wall("hub"), np.linspace(0.0, 1.0, 40)
+    along = np.real(wall.values(np.array([1.1]), 1))[0]
+    past = np.real(wall.values(np.array([1.1])))[0] + np.linspace(0.02, 0.03, 10)[:, None] * along / np.hypot(*along)
+    on = np.real(wall.values(t)) + 1e-5 * np.random.default_rng(0).normal(size=(40, 2))
+    off = blade_ends._off_row(WallPoints(name="hub", places=np.concatenate([on, past])), exact)
+    assert np.max(off[:40]) < 1e-4
+    assert np.min(off[40:]) > 0.015
 
 
 @pytest.mark.parametrize("places", [[0.5], [0.3, 0.5, 0.6], [0.5] * 12])

@@ -20,7 +20,7 @@ from bladewright.fitting.matching.footpoints import (
     unit_or_zero,
 )
 from bladewright.fitting.models.model import ModelShape, stepped_rates
-from bladewright.numerics.elementary import turned_left
+from bladewright.numerics.elementary import length, turned_left
 from bladewright.numerics.robust import median_deviation
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.surface import Surface
@@ -54,6 +54,8 @@ CLEARLY_ALONE = 0.01
 """ratio of medians below which a row is told by a line of its own, not by its wall (design/matching.md)"""
 OUTER_QUANTILE = 0.2
 """share of the places outside the law that is first sought: a row is the outermost (design/matching_constants.md)"""
+WALL_REACH = (-0.1, 1.1)
+"""parameters between which a wall is continued past the edges (design/matching.md)"""
 ROW_SPREAD = 1e-3
 """spread of the points at an end below which they stand in a row, of the chord (design/matching_constants.md)"""
 END_PARAMETERS = {"hub": 0.0, "shroud": 1.0}
@@ -82,7 +84,7 @@ class WallPoints:
             value, first, second = (np.real(line.values(t, order)) for order in range(3))
             miss = value - self.places
             rise = np.sum(first**2, axis=-1) + np.sum(miss * second, axis=-1)
-            t = np.clip(t - np.sum(miss * first, axis=-1) / np.where(rise > 0.0, rise, np.inf), -0.1, 1.1)
+            t = np.clip(t - np.sum(miss * first, axis=-1) / np.where(rise > 0.0, rise, np.inf), *WALL_REACH)
         value, first = (np.real(line.values(t, order)) for order in range(2))
         normal = unit_or_zero(turned_left(first))
         return t, normal, np.asarray(np.sum(normal * (self.places - value), axis=-1))
@@ -201,7 +203,10 @@ def _off_row(wall: WallPoints, exact: ExactBlade) -> Reals:
     """
     t, normals, distances = wall.located(exact)
     inward = 1.0 if wall.name == "hub" else -1.0
-    by_wall = _off_law(2.0 * t - 1.0, distances, inward, ROW_DEGREE)
+    # places past a wall's continuation are on no law off it
+    miss = length(wall.places - np.real(exact.wall(wall.name).values(t)))
+    past = np.where((t <= WALL_REACH[0]) | (t >= WALL_REACH[1]), miss, 0.0)
+    by_wall = np.maximum(_off_law(2.0 * t - 1.0, distances, inward, ROW_DEGREE), past)
     about = wall.places - np.mean(wall.places, axis=0)
     axes = np.linalg.eigh(about.T @ about)[1].T
     # along the wall: across it, rows beside each other seem to be one
