@@ -33,7 +33,7 @@ from bladewright.fitting.initial_guess.blade import UPRIGHT, spans_along_y
 from bladewright.fitting.matching.footpoints import Footpoints
 from bladewright.fitting.matching.noise import EXACT
 from bladewright.fitting.matching.search import Match, Progress, Task
-from bladewright.fitting.model_selection.selection import THOROUGH_POINTS, with_points_left_out
+from bladewright.fitting.model_selection.selection import THOROUGH_POINTS, searched_with_more
 from bladewright.fitting.model_selection.structure_search import NEAR_RICH
 from bladewright.fitting.placing import (
     UPRIGHT_NOTE,
@@ -342,7 +342,7 @@ def _with_points_left_out(outcome: _Outcome, target: MatchTarget) -> _Outcome:
     drawn = rows[random_subset(len(rows), THOROUGH_POINTS)]
     trusted = np.isin(np.arange(len(shown)), missed)
     more = replace(task, trusted=trusted).part(np.union1d(drawn, missed))
-    found = with_points_left_out(more, match, target)
+    found = searched_with_more(more, match, target)
     if found is match:
         return outcome
     again = _outcome(here, found, found.design.build(), outcome.finishing, measurement.footpoints)

@@ -80,10 +80,10 @@ def loose_ends(match: Match, feet: Footpoints) -> dict[str, float]:
             beside = feet.part(np.abs(feet.v - end) < FACE_BAND)
             places = in_meridian(beside.points + beside.miss, exact.mapping.revolved)
             t, _, above = WallPoints(name=name, places=places).located(exact)
-            least = np.full(len(free), -np.inf)
-            np.maximum.at(least, part_of(np.clip(t, 0.0, 1.0), len(free)), above if end else -above)
-            past = -least[np.isfinite(least)]
-            loose[name] = max(gap, float(np.max(past, initial=0.0)))
+            outermost = np.full(len(free), -np.inf)
+            np.maximum.at(outermost, part_of(np.clip(t, 0.0, 1.0), len(free)), above if end else -above)
+            short = -outermost[np.isfinite(outermost)]
+            loose[name] = max(gap, float(np.max(short, initial=0.0)))
     return loose
 
 

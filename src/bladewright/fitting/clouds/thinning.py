@@ -50,6 +50,7 @@ def _cells(places: Reals, halvings: float) -> tuple[NDArray[np.intp], Reals]:
 
 def without_copies(points: Reals) -> NDArray[np.intp]:
     """Indices, in order, of points (n, d), each place once where most are copies: these share their noise."""
+    # points of different x are no copies, which is soon known
     if 2 * len(np.unique(points[:, 0])) > len(points):
         return np.arange(len(points), dtype=np.intp)
     _, first = np.unique(points, axis=0, return_index=True)

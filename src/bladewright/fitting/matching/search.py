@@ -278,7 +278,7 @@ def evaluated(task: Task, design: Design, *, noise: float | None, before: Match 
     trusted = task.trusted if task.allow_outliers else np.ones(len(points), dtype=bool)
     noise_estimate = noise_of(points, footpoints, task.precision, trusted=trusted)
     walls = task.walls or (task.outline if task.preliminary else ())
-    # of a blade that nobody has given the outline of the points is the end
+    # where no design gives the ends, the outline of the points does
     reach = FACE_BAND if task.outline else ROW_BAND
     ends = blade_ends_of(points, footpoints, shape, noise_estimate.inliers, walls, reach)
     rows = noise_estimate.inliers & ~ends.on_end_face

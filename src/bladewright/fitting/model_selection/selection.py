@@ -149,10 +149,10 @@ def _within(rich: Match, search: StructureSearch, many: Task, tolerance: float) 
     return whole, reason
 
 
-def with_points_left_out(task: Task, match: Match, target: MatchTarget) -> Match:
-    """A match searched on with points that its own search left out, the structure and what is held its own.
+def searched_with_more(task: Task, match: Match, target: MatchTarget) -> Match:
+    """A match searched on with more points, the structure and what is held its own; or as it is where that fails.
 
-    It is the exchange method of semi-infinite problems (Hettich and Kortanek 1993, section 7), an exchange only.
+    It is the exchange method of semi-infinite problems (Hettich and Kortanek 1993, section 7): one exchange.
     """
     more = replace(task, free=FreeParameters(free=match.problem.paths), held=match.held)
     if target.tolerance is None:
