@@ -62,6 +62,13 @@ def test_no_point_of_a_blade_at_the_side_of_the_axis_is_on_a_wall(name, cloud, a
     assert not np.any(walls_of(turned, None).kinds != "")
 
 
+def test_a_side_seen_along_the_span_that_goes_past_a_thicker_end_on_one_side_is_no_wall():
+    chord, span = np.random.default_rng(0).random((2, 3000))
+    side = np.arange(3000) < 1500
+    points = np.stack([chord, span, np.where(side, 0.0, 0.05 + 0.3 * span)], axis=-1)
+    assert not np.any(walls_of(points, "linear").kinds != "")
+
+
 @pytest.mark.parametrize("name", ["compressor-stator", pytest.param("inlet-guide-vane", marks=pytest.mark.slow)])
 def test_the_points_of_a_hub_are_told(name):
     blade = built(example(name).changed({"hub_clearance": None}).plain)

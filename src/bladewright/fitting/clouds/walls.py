@@ -1,8 +1,9 @@
 """Points of hub and shroud beside a blade: a sheet on one curve of the meridional plane that ends the blade.
 
 Sheets are connected patches of neighbouring points, whose plane holds the pitchwise direction (principal components:
-Hoppe et al. 1992). A sheet is a wall where it is wider along the pitch than the blade is thick beside it, and most
-other points stand on no such curve. Sides are not, nor are noses, end faces and rows of points.
+Hoppe et al. 1992). A sheet is a wall where it is wider along the pitch than the blade is thick beside it, past which
+it reaches on both sides, and most other points stand on no such curve. Sides do not, nor do noses, end faces and rows
+of points.
 """
 
 from dataclasses import dataclass
@@ -36,6 +37,8 @@ MOST_SHEETS = 0.5
 side of the axis is while a cascade is tried (design/matching.md)"""
 WIDER = 1.35
 """least width of a wall along the pitch, of the largest thickness beside it (design/matching.md)"""
+PAST = 0.1
+"""share of a wall's points that lie past the blade on each side at least (design/matching.md)"""
 FILLET_PATCH = 8
 """points of a patch of a fillet, which is small (design/matching_constants.md)"""
 AT_WALL, ON_FILLET = 0.65, 0.5
@@ -154,14 +157,16 @@ def _extents(patches: Reals) -> tuple[Reals, Reals]:
 
 
 def _is_wall(sheet: _Sheet, some: _Unrolled, own: NDArray[np.bool_], others: NDArray[np.bool_], width: float) -> bool:
-    """Whether a sheet is wider along the pitch than the blade is thick beside it."""
+    """Whether a sheet is wider along the pitch than the blade is thick beside it, and reaches past both sides."""
     away, _, across = sheet.beside(some.plane, width)
     if np.count_nonzero(others & (away < 0.25 * sheet.extent) & across) < BESIDE:
         return False
-    own_width = np.ptp(some.pitchwise[own][sheet.tree.query(sheet.points, k=BESIDE)[1]], axis=1)
-    beside = cKDTree(some.plane[others]).query(sheet.points, k=BESIDE)[1]
-    thickness = np.ptp(some.pitchwise[others][beside], axis=1)
-    return bool(np.median(own_width) > WIDER * np.quantile(thickness, 0.95))
+    at = some.pitchwise[own]
+    own_width = np.ptp(at[sheet.tree.query(sheet.points, k=BESIDE)[1]], axis=1)
+    beside = some.pitchwise[others][cKDTree(some.plane[others]).query(sheet.points, k=BESIDE)[1]]
+    low, high = np.min(beside, axis=1), np.max(beside, axis=1)
+    past = min(np.mean(at < low), np.mean(at > high))
+    return bool(past > PAST and np.median(own_width) > WIDER * np.quantile(high - low, 0.95))
 
 
 def _fillet_height(sheet: _Sheet, some: _Unrolled, points: Reals, others: NDArray[np.bool_], width: float) -> float:
