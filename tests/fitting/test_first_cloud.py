@@ -27,7 +27,7 @@ def test_a_whole_blade_is_taken_as_it_is(cloud: np.ndarray) -> None:
     [
         ([["a", "b"]] * 200, "are not numbers"),
         (np.zeros((200, 4)), "the shape"),
-        (HOLED, "the first of them point 7"),
+        (HOLED, "the first of them row 7"),
         (SECTION[:23], "23 different points"),
         (BLADE[:99], "99 different points"),
         (np.repeat(BLADE[:50], 4, axis=0), "50 different points"),

@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from bladewright.domain.row import turn_matrix
 from bladewright.errors import FitError
-from bladewright.fitting.checks import reals
+from bladewright.fitting.checks import checked_points
 from bladewright.fitting.clouds.thinning import MOST_POINTS, even_subset, groups, random_subset
 from bladewright.nurbs.basis import Reals
 
@@ -44,17 +44,8 @@ def checked_cloud(cloud: ArrayLike) -> Reals:
     Raises FitError for anything but finite numbers in two or three columns, fewer than 24 different points (100 in
     space), points on one line or one plane, and one side of a blade only.
     """
-    points = reals("the points of the cloud", cloud, "give (n, 2) or (n, 3) in metres")
-    if points.ndim != 2 or points.shape[1] not in (2, 3):
-        raise FitError(
-            f"the cloud has the shape {points.shape}: give (n, 2) with x and y, or (n, 3) with x, y and z, in metres"
-        )
-    bad = ~np.all(np.isfinite(points), axis=1)
-    if np.any(bad):
-        raise FitError(
-            f"{np.count_nonzero(bad)} of {len(points)} points are not finite numbers, the first of them point "
-            f"{int(np.argmax(bad))}: leave them out"
-        )
+    needed = "give (n, 2) with x and y, or (n, 3) with x, y and z, in metres"
+    points = checked_points("the points of the cloud", cloud, (2, 3), needed)
     different, dimension = different_points(points), points.shape[1]
     spread = np.linalg.svd(different - np.mean(different, axis=0), compute_uv=False)
     if spread[1] < FLATTEST * spread[0]:

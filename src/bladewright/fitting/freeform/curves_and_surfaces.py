@@ -16,7 +16,7 @@ from bladewright.errors import FitError, GeometryError
 from bladewright.fitting.checks import check_kind, check_whole
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.freeform.fits import FreeformFit, Request
-from bladewright.fitting.freeform.net import DIRECTIONS, first_net, matched_within, net_of
+from bladewright.fitting.freeform.net import DIRECTIONS, first_net, matched_net, net_of
 from bladewright.numerics.elementary import cumulative_length
 from bladewright.numerics.single_thread import single_threaded
 from bladewright.nurbs.basis import Reals
@@ -79,14 +79,12 @@ def fit_curve(
     point is linear in the control points; at its nearest place the distance does not change with the parameter) and
     Levenberg-Marquardt steps in place of finite differences.
     """
-    request = Request(
-        "a curve", points, weights=weights, power=power, robust=robust, tolerance=tolerance, progress=progress
-    )
+    request = Request("a curve", points, power, tolerance, progress, weights=weights, robust=robust)
     check_whole(degree=degree, control_points=control_points)
     check_kind(start, Curve)
     if closed and not (isinstance(ends, str) and ends == "fixed"):
         raise FitError("closed and ends are both given: a closed curve has no ends; leave one out")
-    pair, scaled = request.ends(ends), request.scaled(request.points)
+    pair, scaled = request.ends(ends), request.points
     if start is None:
         shares = sites_along(scaled, closed=closed)
         own = None if knots is None else (knots,)
@@ -101,7 +99,7 @@ def fit_curve(
         else:
             first, last = scaled[list(outermost)] if pair is None else pair
             net = replace(net, boundary="corners", points=np.stack([first, *net.points[1:-1], last]))
-    match, notes = matched_within(net, scaled, request, warm=start is not None)
+    match, notes = matched_net(net, request, warm=start is not None)
     curve = request.restored(match.shape.shape)
     return CurveFit(curve=curve, u=match.parameters[:, 0], **match.figures(request, *notes))
 
@@ -191,9 +189,7 @@ def fit_surface(
     Raises FitError where points are too few, not finite or on a line, or a choice is unknown. Source: as of
     `fit_curve`; the bending is that of a thin plate under tension (Franke 1985) in the surface's parameters.
     """
-    request = Request(
-        "a surface", points, 3, weights=weights, power=power, robust=robust, tolerance=tolerance, progress=progress
-    )
+    request = Request("a surface", points, power, tolerance, progress, dimension=3, weights=weights, robust=robust)
     if boundary not in ("free", "corners", "fixed"):
         raise FitError(f"boundary {boundary!r} is unknown: `free`, `corners`, or `fixed` at that of `start`")
     if boundary == "fixed" and start is None:
@@ -206,7 +202,7 @@ def fit_surface(
         )
     for degree, count in zip(degrees, control_points, strict=True):
         check_whole(degree=degree, control_points=count)
-    scaled = request.scaled(request.points)
+    scaled = request.points
     if start is None:
         shares = _rectangle(scaled)
         net = first_net(scaled, shares, degrees, control_points, knots, weights)
@@ -223,7 +219,7 @@ def fit_surface(
         except GeometryError:
             request.report("weights that fall towards an edge would not stay positive past it")
     net = replace(net, boundary=boundary)
-    match, notes = matched_within(net, scaled, request, warm=start is not None)
+    match, notes = matched_net(net, request, warm=start is not None)
     surface, parameters = match.shape.shape, match.parameters
     if boundary == "free":
         first, last = np.min(parameters, axis=0), np.max(parameters, axis=0)

@@ -15,13 +15,20 @@ from scipy.linalg import null_space
 from bladewright.errors import FitError, GeometryError
 from bladewright.fitting.checks import reals
 from bladewright.fitting.freeform.fits import Request
-from bladewright.fitting.freeform.search import STIFFNESSES, Shape, ShapeMatch, matched_by_stages, placed
+from bladewright.fitting.freeform.search import (
+    STIFFNESSES,
+    Shape,
+    ShapeMatch,
+    matched_by_stages,
+    matched_within,
+    placed,
+)
 from bladewright.numerics.quadrature import panels
 from bladewright.nurbs.basis import Reals, basis, breaks, checked_knots, uniform_knots
 from bladewright.nurbs.blossom import knot_change
 from bladewright.nurbs.closest import Descents, Places
 from bladewright.nurbs.collocation import collocation
-from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.curve import Curve, checked_weights
 from bladewright.nurbs.refine import Direction, direction_of, inserted
 from bladewright.nurbs.surface import Surface
 
@@ -29,10 +36,6 @@ TENSION = 0.01
 """weight of squared first derivatives, of that of squared second ones (design/freeform.md)"""
 LAST_STEP = 1e-10
 """last step of a descent, in the parameters of a patch: exact points are met to it (design/freeform.md)"""
-KNOT_ROUNDS = 25
-"""times that knots are added at most; it bounds the time (design/matching_constants.md)"""
-NOISE_RATIO = 1.25
-"""root mean square of a knot span's distances, of the noise, up to which they are noise (design/freeform.md)"""
 DIRECTIONS: tuple[Direction, Direction] = ("u", "v")
 """of a surface; a curve has the first"""
 
@@ -195,8 +198,9 @@ class Net(Shape):
         turned = np.einsum("mrd,mnd->mrn", directions, away).reshape(len(moved), -1)
         return np.concatenate([moved, turned @ self.gauge], axis=1)
 
-    def bending(self, stiffness: float) -> tuple[Reals, Reals]:
-        root = np.sqrt(stiffness) * self.bending_root
+    @property
+    def bending(self) -> tuple[Reals, Reals]:
+        root = self.bending_root
         slopes = np.kron(root[:, self.free], np.eye(self.points.shape[1]))
         return (root @ self.points).ravel(), np.pad(slopes, ((0, 0), (0, self.gauge.shape[1])))
 
@@ -234,35 +238,31 @@ def first_net(
 ) -> Net:
     """The net, a little stiff, nearest to points (m, d) at shares (m, k) of its domain.
 
-    Its knots are uniform or given. Raises FitError where degrees, numbers of control points and knots make no curve or
-    surface, and where weights are not positive or not as many as control points.
+    Its knots are uniform or given. Raises FitError where degrees, numbers of control points, knots and weights make no
+    curve or surface.
     """
-    given_knots = [
-        np.atleast_1d(reals("knots", own, "give an increasing list")) for own in (() if knots is None else knots)
-    ]
-    if knots is not None:
-        ends = (1,) if closed else tuple(degree + 1 for degree in degrees)
-        counts = tuple(len(own) - end for own, end in zip(given_knots, ends, strict=True))
+    own = None if knots is None else [np.atleast_1d(reals("knots", each, "give an increasing list")) for each in knots]
+    if own is not None:
+        counts = tuple(len(each) - (1 if closed else degree + 1) for each, degree in zip(own, degrees, strict=True))
     try:
-        own = [uniform_knots(count, degree) for count, degree in zip(counts, degrees, strict=True)]
-        every = own if knots is None or closed else given_knots
-        own = [checked_knots(*each, "knots") for each in zip(every, degrees, counts, strict=True)]
+        uniform = [uniform_knots(count, degree) for count, degree in zip(counts, degrees, strict=True)]
+        if closed:
+            period = np.linspace(0.0, 1.0, counts[0] + 1) if own is None else own[0]
+            if not (np.diff(period) > 0.0).all():
+                raise FitError(f"the knots {period.tolist()} of a closed curve must be distinct and increasing")
+            own = [np.pad(period, degrees[0], "edge")]
+        more = degrees[0] if closed else 0
+        clamped = [
+            checked_knots(each, degree, count + more, "knots")
+            for each, degree, count in zip(own or uniform, degrees, counts, strict=True)
+        ]
+        one = np.ones(counts) if isinstance(weights, str) else reals("weights", weights, "give one a control point")
+        logs = np.log(np.real(checked_weights(one, counts))).ravel()
     except GeometryError as error:
         what = "curve" if len(degrees) == 1 else "surface"
         raise FitError(f"a {what} of degree {degrees} with {counts} control points: {error}") from error
-    if closed:
-        period = np.linspace(0.0, 1.0, counts[0] + 1) if knots is None else given_knots[0]
-        if not (np.diff(period) > 0.0).all():
-            raise FitError(f"the knots {period.tolist()} of a closed curve must be distinct and increasing; sort them")
-        own = [np.pad(period, degrees[0], "edge")]
-    logs = np.zeros(counts)
-    if not isinstance(weights, str):
-        given = reals("weights", weights, "give a positive one for each control point")
-        if given.shape != counts or not (given > 0.0).all():
-            raise FitError(f"weights of shape {given.shape} were given: positive ones of shape {counts} are needed")
-        logs = np.log(given)
-    none = np.zeros((logs.size, points.shape[1]))
-    net = Net(knots=tuple(own), degrees=degrees, points=none, log_weights=logs.ravel(), closed=closed)
+    none = np.zeros((len(logs), points.shape[1]))
+    net = Net(knots=tuple(clamped), degrees=degrees, points=none, log_weights=logs, closed=closed)
     low, high = net.domain
     root = np.sqrt(STIFFNESSES[1] * len(points)) * net.bending_root
     rows = np.concatenate([net.basis(low + (high - low) * shares), root])
@@ -276,9 +276,9 @@ def _products(knots: Reals, degree: int) -> list[Reals]:
     return [np.asarray(values.T @ (weight[:, None] * values)) for values in orders]
 
 
-def matched_within(net: Net, points: Reals, request: Request, *, warm: bool) -> tuple[ShapeMatch[Net], tuple[str, ...]]:
-    """The match within the largest distance that is asked for, and a note why it is not reached."""
-    dimensions = len(net.knots)
+def matched_net(net: Net, request: Request, *, warm: bool) -> tuple[ShapeMatch[Net], tuple[str, ...]]:
+    """The match of a net, with knots until its largest distance is what is asked for, and a note where it is not."""
+    points, dimensions = request.points, len(net.knots)
     unknowns = int(net.free.sum()) * (points.shape[1] if dimensions == 1 else 1)
     unknowns += len(net.points) - 1 if request.weights_free else 0
     rows = len(np.unique(points, axis=0)) * (points.shape[1] - dimensions)
@@ -288,43 +288,36 @@ def matched_within(net: Net, points: Reals, request: Request, *, warm: bool) -> 
             f"{' x '.join(map(str, net.counts))} control points: take fewer control points, fixed weights, or more "
             "points"
         )
-    match = matched_by_stages(placed(net, points), request, warm=warm)
-    limit = np.inf if request.tolerance is None else request.tolerance / request.extent
-    for _ in range(KNOT_ROUNDS):
-        if match.largest <= limit:
-            return match, ()
-        finer, reason = _finer(match, limit)
-        if finer is None:
-            reason = reason or f"noise of about {match.noise * request.extent:.3g} stops further knots"
-            break
+
+    def richer(match: ShapeMatch[Net], limit: float) -> ShapeMatch[Net] | str:
+        finer = _finer(match, limit)
+        if isinstance(finer, str):
+            return finer
         request.report(f"{len(finer.points)} control points")
-        match = matched_by_stages(replace(match, shape=finer, weights=np.ones(len(points))), request, warm=True)
-    else:
-        reason = f"{KNOT_ROUNDS} rounds of knots do not reach it"
-    far = match.largest * request.extent
-    return match, (f"the largest distance is {far:.3g} where {request.tolerance:.3g} was asked for: {reason}",)
+        return matched_by_stages(replace(match, shape=finer, weights=np.ones(len(points))), request, warm=True)
+
+    return matched_within(matched_by_stages(placed(net, points), request, warm=warm), request, richer)
 
 
-def _finer(match: ShapeMatch[Net], limit: float) -> tuple[Net | None, str]:
-    """The net with a knot in each span too far off, of a surface where it gains more, or None and why, if not noise."""
-    found: list[tuple[float, Net]] = []
-    reason = ""
-    square = match.distances**2
+def _finer(match: ShapeMatch[Net], limit: float) -> Net | str:
+    """The net with a knot in each span too far off, along the direction where it gains more; or why there is none."""
+    found = []
     for direction, own, at in zip(DIRECTIONS, match.shape.knots, match.parameters.T, strict=False):
-        knots = []
-        for low, high in pairwise(breaks(own)):
-            rows = match.inliers & (at >= low) & (at <= high)
-            above = square[rows].sum() > rows.sum() * match.codimension * (NOISE_RATIO * match.noise) ** 2
-            if above and square[rows].max() > limit**2:
-                knots.append(0.5 * (low + high))
-        if not knots:
-            continue
-        finer = match.shape.refined(knots, direction)
-        if 2 * len(finer.points) > len(at):
-            reason = "the points are too few for further knots"
-            continue
+        spans = [(low, high, match.inliers & (at >= low) & (at <= high)) for low, high in pairwise(breaks(own))]
+        knots = [
+            0.5 * (low + high)
+            for low, high, rows in spans
+            if match.distances[rows].max(initial=0.0) > limit and not match.is_noise(rows)
+        ]
+        if knots:
+            found.append(match.shape.refined(knots, direction))
+    if not found:
+        return "the rest is the noise of the points"
+    few = [net for net in found if 2 * len(net.points) <= len(match.points)]
+
+    def gain(finer: Net) -> float:
         trial = replace(match, shape=finer)
         step = np.linalg.lstsq(trial.jacobian, trial.residuals, rcond=1e-6)[0]
-        gain = float(np.sum((trial.jacobian @ step) ** 2))
-        found.append((gain / (len(finer.points) - len(match.shape.points)), finer))
-    return max(found, key=lambda each: each[0])[1] if found else None, reason
+        return float(np.sum((trial.jacobian @ step) ** 2)) / (len(finer.points) - len(match.shape.points))
+
+    return max(few, key=gain) if few else "the points are too few for further knots"
