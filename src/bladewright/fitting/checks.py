@@ -7,16 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from bladewright.errors import DesignError, FitError
+from bladewright.errors import DesignError, FitError, GeometryError
 from bladewright.nurbs.basis import Reals
 
 
 @contextmanager
 def refusing() -> Iterator[None]:
-    """Make refusals of values that no design can have those of a fit."""
+    """Make refusals of values that no design, curve or surface can have those of a fit."""
     try:
         yield
-    except DesignError as error:
+    except (DesignError, GeometryError) as error:
         raise FitError(str(error)) from error
 
 

@@ -13,13 +13,13 @@ from scipy.spatial import ConvexHull, cKDTree
 from scipy.spatial.distance import cdist
 
 from bladewright.errors import FitError, GeometryError
-from bladewright.fitting.checks import check_kind, check_whole
+from bladewright.fitting.checks import check_kind, check_whole, reals, refusing
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.freeform.fits import FreeformFit, Request
-from bladewright.fitting.freeform.net import DIRECTIONS, first_net, matched_net, net_of
+from bladewright.fitting.freeform.net import DIRECTIONS, laid, matched_net, net_of
 from bladewright.numerics.elementary import cumulative_length
 from bladewright.numerics.single_thread import single_threaded
-from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.basis import Reals, uniform_knots
 from bladewright.nurbs.closest import Descents
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import extended, reparametrised
@@ -87,8 +87,10 @@ def fit_curve(
     pair, scaled = request.ends(ends), request.points
     if start is None:
         shares = sites_along(scaled, closed=closed)
-        own = None if knots is None else (knots,)
-        net = first_net(scaled, shares[:, None], (degree,), (control_points,), own, weights, closed=closed)
+        with refusing():
+            own = _knots(knots, control_points, degree, closed=closed)
+            flat = Curve(control_points=np.zeros((len(own) - degree - 1, scaled.shape[1])), knots=own, degree=degree)
+            net = laid(net_of(flat, closed=closed), scaled, shares[:, None], weights)
     else:
         net = net_of(replace(start, control_points=request.scaled(start.control_points)), closed=closed)
         shares = net.nearest(scaled)[:, 0]
@@ -102,6 +104,18 @@ def fit_curve(
     match, notes = matched_net(net, request, warm=start is not None)
     curve = request.restored(match.shape.shape)
     return CurveFit(curve=curve, u=match.parameters[:, 0], **match.figures(request, *notes))
+
+
+def _knots(given: ArrayLike | None, count: int, degree: int, *, closed: bool = False) -> Reals:
+    """Clamped knots, uniform or as given; those given of a closed curve are the distinct ones of a period."""
+    own = None if given is None else np.atleast_1d(reals("knots", given, "give an increasing list"))
+    uniform = uniform_knots(count if own is None else len(own) - (1 if closed else degree + 1), degree)
+    if not closed:
+        return uniform if own is None else own
+    period = np.linspace(0.0, 1.0, count + 1) if own is None else own
+    if not (np.diff(period) > 0.0).all():
+        raise FitError(f"the knots {period.tolist()} of a closed curve must be distinct and increasing; sort them")
+    return np.pad(period, degree, "edge")
 
 
 def sites_along(points: Reals, *, closed: bool) -> Reals:
@@ -205,7 +219,12 @@ def fit_surface(
     scaled = request.points
     if start is None:
         shares = _rectangle(scaled)
-        net = first_net(scaled, shares, degrees, control_points, knots, weights)
+        with refusing():
+            own = (None, None) if knots is None else knots
+            u, v = (_knots(*each) for each in zip(own, control_points, degrees, strict=True))
+            none = np.zeros((len(u) - degrees[0] - 1, len(v) - degrees[1] - 1, 3))
+            flat = Surface(control_points=none, knots_u=u, knots_v=v, degree_u=degrees[0], degree_v=degrees[1])
+            net = laid(net_of(flat), scaled, shares, weights)
         if boundary == "corners":
             corners = [np.argmin(np.sum((shares - corner) ** 2, axis=1)) for corner in np.ndindex(2, 2)]
             net.points[~replace(net, boundary="corners").free] = scaled[corners]

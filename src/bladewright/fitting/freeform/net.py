@@ -9,10 +9,10 @@ from itertools import pairwise
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.linalg import null_space
 
-from bladewright.errors import FitError, GeometryError
+from bladewright.errors import FitError
 from bladewright.fitting.checks import reals
 from bladewright.fitting.freeform.fits import Request
 from bladewright.fitting.freeform.search import (
@@ -24,7 +24,7 @@ from bladewright.fitting.freeform.search import (
     placed,
 )
 from bladewright.numerics.quadrature import panels
-from bladewright.nurbs.basis import Reals, basis, breaks, checked_knots, uniform_knots
+from bladewright.nurbs.basis import Reals, basis, breaks
 from bladewright.nurbs.blossom import knot_change
 from bladewright.nurbs.closest import Descents, Places
 from bladewright.nurbs.collocation import collocation
@@ -44,9 +44,8 @@ DIRECTIONS: tuple[Direction, Direction] = ("u", "v")
 class Net(Shape):
     """Control points and weights of a curve or surface, some of them unknown."""
 
-    knots: tuple[Reals, ...]
-    """clamped, one for each direction; the inner ones of a closed curve are distinct"""
-    degrees: tuple[int, ...]
+    pattern: Curve | Surface
+    """whose knots and degrees it has; the inner knots of a closed curve are distinct"""
     points: Reals
     """(N, d) control points, the last direction fastest; of a closed curve each once"""
     log_weights: Reals
@@ -60,21 +59,27 @@ class Net(Shape):
     """points whose places are held at the two ends of a curve; none where empty"""
 
     @property
+    def axes(self) -> list[tuple[Reals, int]]:
+        """Knots and degree along each direction."""
+        return [direction_of(self.pattern, each) for each in DIRECTIONS[: self.pattern.control_points.ndim - 1]]
+
+    @property
     def counts(self) -> tuple[int, ...]:
         """Numbers of control points along each direction."""
-        more = self.degrees[0] if self.closed else 0
-        return tuple(len(knots) - degree - 1 - more for knots, degree in zip(self.knots, self.degrees, strict=True))
+        if self.closed:
+            return (len(self.points),)
+        return self.pattern.control_points.shape[:-1]
 
     @cached_property
     def spread(self) -> Reals:
         """(m, N) matrix from the control points to those of the clamped shape, which a closed curve has more of."""
         if not self.closed:
             return np.eye(len(self.points))
-        period, degree, (count,) = breaks(self.knots[0]), self.degrees[0], self.counts
+        ((knots, degree),), (count,) = self.axes, self.counts
+        period = breaks(knots)
         turn, place = np.divmod(np.arange(-degree, count + degree + 1), count)
         around = period[place] + turn * (period[-1] - period[0])
-        change = knot_change(around, degree, self.knots[0])
-        return np.asarray(change @ np.eye(count)[np.arange(count + degree) % count])
+        return np.asarray(knot_change(around, degree, knots) @ np.eye(count)[np.arange(count + degree) % count])
 
     @cached_property
     def free(self) -> NDArray[np.bool_]:
@@ -95,7 +100,7 @@ class Net(Shape):
             return np.zeros((len(self.points), 0))
         trends = [
             along.ravel()
-            for along, knots in zip(np.indices(self.counts), self.knots, strict=True)
+            for along, (knots, _) in zip(np.indices(self.counts), self.axes, strict=True)
             if len(breaks(knots)) == 2 and not self.closed
         ]
         return np.asarray(null_space(np.array([np.ones(len(self.points)), *trends])))
@@ -106,7 +111,7 @@ class Net(Shape):
 
         Of squared second and some first derivatives: a thin plate under tension (Duchon 1977, Franke 1985).
         """
-        of = [_products(knots, degree) for knots, degree in zip(self.knots, self.degrees, strict=True)]
+        of = [_products(knots, degree) for knots, degree in self.axes]
         energy, *across = (bend + TENSION * slope for _, slope, bend in of)
         for other in across:
             (mass_u, slope_u, _), (mass_v, slope_v, _) = of
@@ -135,22 +140,14 @@ class Net(Shape):
         own = np.exp(self.log_weights)
         weights = self.spread @ own
         points = (self.spread @ (own[:, None] * self.points)) / weights[:, None]
-        given = weights.reshape(self.counts if len(self.knots) == 2 else -1) if self.log_weights.any() else None
-        if len(self.knots) == 1:
-            return Curve(control_points=points, knots=self.knots[0], degree=self.degrees[0], weights=given)
-        return Surface(
-            control_points=points.reshape(*self.counts, -1),
-            weights=given,
-            knots_u=self.knots[0],
-            knots_v=self.knots[1],
-            degree_u=self.degrees[0],
-            degree_v=self.degrees[1],
-        )
+        shape = self.pattern.control_points.shape
+        given = weights.reshape(shape[:-1]) if self.log_weights.any() else None
+        return replace(self.pattern, control_points=points.reshape(shape), weights=given)
 
     @property
     def domain(self) -> Reals:
         """(2, k) lowest and highest parameters."""
-        return np.array([[knots[0] for knots in self.knots], [knots[-1] for knots in self.knots]])
+        return np.array([knots[[0, -1]] for knots, _ in self.axes]).T
 
     def nearest(self, points: Reals, near: Reals | None = None) -> Reals:
         """Parameters (m, k) of the nearest places of points (m, d); a closed curve has no ends to be held at."""
@@ -160,7 +157,7 @@ class Net(Shape):
             return Places(shape=np.zeros(len(rows), dtype=np.intp), u=rows[:, 0], v=rows[:, -1])
 
         found = search.nearest(points, None if near is None else places(near), converged=LAST_STEP)
-        parameters = np.stack([found.u, found.v], axis=-1)[:, : len(self.knots)]
+        parameters = np.stack([found.u, found.v], axis=-1)[:, : len(self.axes)]
         if self.closed:
             low, high = self.domain
             seam = np.flatnonzero((found.u <= low) | (found.u >= high))
@@ -212,61 +209,32 @@ class Net(Shape):
 
 def net_of(shape: Curve | Surface, *, closed: bool = False) -> Net:
     """A curve or surface as a net; of a closed curve the nearest on its distinct knots."""
-    along = [direction_of(shape, each) for each in (DIRECTIONS[:1] if isinstance(shape, Curve) else DIRECTIONS)]
-    knots, degrees = tuple(own for own, _ in along), tuple(degree for _, degree in along)
-    if closed:
-        knots = (np.pad(breaks(knots[0]), degrees[0], "edge"),)
     points = shape.control_points.reshape(-1, shape.control_points.shape[-1])
     weights = np.ones(len(points)) if shape.weights is None else shape.weights.ravel()
-    net = Net(knots=knots, degrees=degrees, points=points, log_weights=np.log(weights), closed=closed)
+    net = Net(pattern=shape, points=points, log_weights=np.log(weights), closed=closed)
     if closed:
+        (knots, degree), given = net.axes[0], shape.weights is not None
+        own = np.pad(breaks(knots), degree, "edge")
+        pattern = Curve(control_points=np.zeros((len(own) - degree - 1, points.shape[1])), knots=own, degree=degree)
+        net = replace(net, pattern=pattern, points=pattern.control_points[degree:])
         both = np.linalg.lstsq(net.spread, np.column_stack([weights[:, None] * points, weights]), rcond=None)[0]
-        logs = np.zeros(len(both)) if shape.weights is None else np.log(both[:, -1])
+        logs = np.log(both[:, -1]) if given else np.zeros(len(both))
         net = replace(net, points=both[:, :-1] / both[:, -1:], log_weights=logs)
     return net
 
 
-def first_net(
-    points: Reals,
-    shares: Reals,
-    degrees: tuple[int, ...],
-    counts: tuple[int, ...],
-    knots: tuple[ArrayLike, ...] | None,
-    weights: str | ArrayLike,
-    *,
-    closed: bool = False,
-) -> Net:
-    """The net, a little stiff, nearest to points (m, d) at shares (m, k) of its domain.
+def laid(net: Net, points: Reals, shares: Reals, weights: object) -> Net:
+    """The net, a little stiff, nearest to points (m, d) at shares (m, k) of its domain; with weights, if any are given.
 
-    Its knots are uniform or given. Raises FitError where degrees, numbers of control points, knots and weights make no
-    curve or surface.
+    Raises FitError and GeometryError where these are not one positive number for each control point.
     """
-    own = None if knots is None else [np.atleast_1d(reals("knots", each, "give an increasing list")) for each in knots]
-    if own is not None:
-        counts = tuple(len(each) - (1 if closed else degree + 1) for each, degree in zip(own, degrees, strict=True))
-    try:
-        uniform = [uniform_knots(count, degree) for count, degree in zip(counts, degrees, strict=True)]
-        if closed:
-            period = np.linspace(0.0, 1.0, counts[0] + 1) if own is None else own[0]
-            if not (np.diff(period) > 0.0).all():
-                raise FitError(f"the knots {period.tolist()} of a closed curve must be distinct and increasing")
-            own = [np.pad(period, degrees[0], "edge")]
-        more = degrees[0] if closed else 0
-        clamped = [
-            checked_knots(each, degree, count + more, "knots")
-            for each, degree, count in zip(own or uniform, degrees, counts, strict=True)
-        ]
-        one = np.ones(counts) if isinstance(weights, str) else reals("weights", weights, "give one a control point")
-        logs = np.log(np.real(checked_weights(one, counts))).ravel()
-    except GeometryError as error:
-        what = "curve" if len(degrees) == 1 else "surface"
-        raise FitError(f"a {what} of degree {degrees} with {counts} control points: {error}") from error
-    none = np.zeros((len(logs), points.shape[1]))
-    net = Net(knots=tuple(clamped), degrees=degrees, points=none, log_weights=logs, closed=closed)
+    if not isinstance(weights, str):
+        given = reals("weights", weights, "give a positive one for each control point")
+        net = replace(net, log_weights=np.log(np.real(checked_weights(given, net.counts))).ravel())
     low, high = net.domain
     root = np.sqrt(STIFFNESSES[1] * len(points)) * net.bending_root
     rows = np.concatenate([net.basis(low + (high - low) * shares), root])
-    return replace(net, points=np.linalg.lstsq(rows, np.concatenate([points, none]), rcond=None)[0])
+    return replace(net, points=np.linalg.lstsq(rows, np.concatenate([points, 0.0 * net.points]), rcond=None)[0])
 
 
 def _products(knots: Reals, degree: int) -> list[Reals]:
@@ -278,7 +246,7 @@ def _products(knots: Reals, degree: int) -> list[Reals]:
 
 def matched_net(net: Net, request: Request, *, warm: bool) -> tuple[ShapeMatch[Net], tuple[str, ...]]:
     """The match of a net, with knots until its largest distance is what is asked for, and a note where it is not."""
-    points, dimensions = request.points, len(net.knots)
+    points, dimensions = request.points, len(net.axes)
     unknowns = int(net.free.sum()) * (points.shape[1] if dimensions == 1 else 1)
     unknowns += len(net.points) - 1 if request.weights_free else 0
     rows = len(np.unique(points, axis=0)) * (points.shape[1] - dimensions)
@@ -302,7 +270,7 @@ def matched_net(net: Net, request: Request, *, warm: bool) -> tuple[ShapeMatch[N
 def _finer(match: ShapeMatch[Net], limit: float) -> Net | str:
     """The net with a knot in each span too far off, along the direction where it gains more; or why there is none."""
     found = []
-    for direction, own, at in zip(DIRECTIONS, match.shape.knots, match.parameters.T, strict=False):
+    for direction, (own, _), at in zip(DIRECTIONS, match.shape.axes, match.parameters.T, strict=False):
         spans = [(low, high, match.inliers & (at >= low) & (at <= high)) for low, high in pairwise(breaks(own))]
         knots = [
             0.5 * (low + high)
