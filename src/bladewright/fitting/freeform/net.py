@@ -55,8 +55,6 @@ class Net(Shape):
     boundary: Literal["free", "corners", "fixed"] = "free"
     """which of the outer control points do not move: none, the corners, or all"""
     closed: bool = False
-    ends: tuple[int, ...] = ()
-    """points whose places are held at the two ends of a curve; none where empty"""
 
     @property
     def axes(self) -> list[tuple[Reals, int]]:
@@ -163,8 +161,6 @@ class Net(Shape):
             seam = np.flatnonzero((found.u <= low) | (found.u >= high))
             past = search.nearest(points[seam], places(low + high - parameters[seam]), converged=LAST_STEP)
             parameters[seam, 0] = np.where(past.square < found.square[seam], past.u, found.u[seam])
-        if self.ends:
-            parameters[list(self.ends)] = self.domain
         return parameters
 
     def tangents(self, parameters: Reals) -> tuple[Reals, Reals, NDArray[np.bool_]]:
@@ -204,7 +200,7 @@ class Net(Shape):
     def refined(self, knots: Sequence[float], direction: Direction) -> Net:
         """The same shape with further knots."""
         net = net_of(inserted(self.shape, knots, direction), closed=self.closed)
-        return replace(net, boundary=self.boundary, weighted=self.weighted, ends=self.ends)
+        return replace(net, boundary=self.boundary, weighted=self.weighted)
 
 
 def net_of(shape: Curve | Surface, *, closed: bool = False) -> Net:
