@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Literal, final
 
 import numpy as np
@@ -88,8 +87,7 @@ class CamberThickness(Shape):
 
     def slopes(self, parameters: Reals, directions: Reals) -> Reals:
         u, at = parameters[:, 0], self.unknowns
-        near = self._sites(u)
-        columns = [self.changed(at + 1j * STEP * each)(u, near).imag / STEP for each in np.eye(len(at))]
+        columns = [self.changed(at + 1j * STEP * each)(u).imag / STEP for each in np.eye(len(at))]
         return np.einsum("nmd,mrd->mrn", columns, directions).reshape(-1, len(at))
 
     @property
@@ -101,27 +99,16 @@ class CamberThickness(Shape):
             slopes, of.bending_root[:, self.heights], np.eye(len(logs))
         )
 
-    @cached_property
-    def _abscissae(self) -> Reals:
-        return np.maximum.accumulate(np.real(self.camber.shape(SITES)[:, 0]))
-
-    def _sites(self, u: Array) -> Reals:
-        """Camber parameters (n,) at parameters u (n,) of the thickness, where the abscissae are the same."""
-        abscissae = np.real(self.thickness.shape(np.abs(np.real(u)))[:, 0])
-        found = np.interp(abscissae, self._abscissae, SITES)
-        # from 1e-5, squared twice, and once more in each evaluation
-        for _ in range(2):
-            place, slope = (np.real(each[:, 0]) for each in self.camber.shape.derivatives(found, 1))
-            found = np.clip(found - (place - abscissae) / np.maximum(slope, 1e-9), 0.0, 1.0)
-        return found
-
-    def __call__(self, u: Array, near: Reals | None = None) -> Array:
-        """Points (n, 2) at parameters u (n,), which may be complex; camber parameters `near` (n,) are then at hand."""
+    def __call__(self, u: Array) -> Array:
+        """Points (n, 2) at parameters u (n,), which may be complex."""
         sign = np.where(np.real(u) < 0.0, -1.0, 1.0)
         x, h = self.thickness.shape(sign * u).T
-        near = self._sites(u) if near is None else near
-        first, slope = self.camber.shape.derivatives(near, 1)
-        place, tangent = self.camber.shape.derivatives(near + (x - first[:, 0]) / slope[:, 0], 1)
+        near: Array = np.interp(np.real(x), np.maximum.accumulate(np.real(self.camber.shape(SITES)[:, 0])), SITES)
+        # to where the camber's abscissa is the same, from 1e-5: squared twice
+        for _ in range(2):
+            place, tangent = self.camber.shape.derivatives(near, 1)
+            near = near + (x - place[:, 0]) / tangent[:, 0]
+        place, tangent = self.camber.shape.derivatives(near, 1)
         return np.asarray(place + (sign * h / length(tangent))[:, None] * turned_left(tangent))
 
 
