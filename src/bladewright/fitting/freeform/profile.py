@@ -17,10 +17,10 @@ from bladewright.fitting.checks import check_whole
 from bladewright.fitting.freeform.fits import FreeformFit, Request
 from bladewright.fitting.freeform.net import LAST_STEP, Net, net_of
 from bladewright.fitting.freeform.search import Shape, ShapeMatch, matched_by_stages, matched_within, placed
-from bladewright.fitting.initial_guess.slices import PLACES, PlanePoints, longest_chord, slices_of
+from bladewright.fitting.initial_guess.slices import PlanePoints, longest_chord, slices_of
 from bladewright.numerics.elementary import Array, length, turned_left
 from bladewright.numerics.single_thread import single_threaded
-from bladewright.nurbs.basis import Reals, basis, uniform_knots
+from bladewright.nurbs.basis import Reals, uniform_knots
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.descent import descended
 from bladewright.nurbs.refine import inserted
@@ -237,10 +237,7 @@ def _start(points: Reals, camber: int, thickness: int, *, round_end: bool) -> Ca
     line = inserted(Curve(control_points=found.camber[0], knots=uniform_knots(4, DEGREE), degree=DEGREE), knots[4:-4])
     low, high = found.camber[0, [0, 3], 0]
     knots, abscissae = uniform_knots(thickness, DEGREE), abscissae_of(thickness, low, high, round_end=round_end)
-    rows = basis(knots, DEGREE, SITES)
-    half = np.interp((rows @ abscissae - low) / (high - low), PLACES, found.half[0])
-    heights = np.zeros(thickness)
-    inner = slice(1, -1) if round_end else slice(1, None)
-    heights[inner] = np.linalg.lstsq(rows[:, inner], half, rcond=None)[0]
+    heights = np.full(thickness, np.mean(found.half))
+    heights[[0, -1] if round_end else [0]] = 0.0
     half_thickness = net_of(Curve(control_points=np.stack([abscissae, heights], -1), knots=knots, degree=DEGREE))
     return CamberThickness(camber=net_of(line), thickness=half_thickness.freed, round_end=round_end)
