@@ -70,9 +70,10 @@ def fit_curve(
     `knots` are uniform by default; those of a closed curve are the n + 1 distinct ones of a period. `weights` are one,
     (n,) given ones, or `free`: positive ones, of whose logarithms mean and, without inner knots, linear trend are zero,
     as these change no shape. `ends` of an open curve are `fixed` at the first and the last point along it, two points,
-    or `free`: where the nearest places end. `power` 2 is least squares, 4 the objective of the source. Where the points
-    leave control points open, the bending decides. With `tolerance` (in the unit of the points) knots are added where
-    the deviation is until no inlier is further away; notes say where noise stops it. `robust` leaves outliers out.
+    or `free`: where the nearest places end, by which inner knots move a little. `power` 2 is least squares, 4 the
+    objective of the source. Where the points leave control points open, the bending decides. With `tolerance` (in the
+    unit of the points) knots are added where the deviation is until no inlier is further away; notes say where noise
+    stops it. `robust` leaves outliers out.
 
     Raises FitError where points are too few, not finite or all the same, or a choice is unknown. Source: the freeform
     NURBS blading paper, section 4.1 (true distances by Newton), here with exact derivatives and Levenberg-Marquardt
@@ -115,7 +116,8 @@ def _matched(net: Net, request: Request, *, warm: bool) -> tuple[Any, Reals, dic
     match, notes = matched_net(net, request, warm=warm)
     shape, parameters = match.shape.shape, match.parameters
     if free:
-        first, last = np.min(parameters, axis=0), np.max(parameters, axis=0)
+        inner = parameters[match.inliers]
+        first, last = np.min(inner, axis=0), np.max(inner, axis=0)
         shape = _over(shape, first, last)
         parameters = np.clip(low + (parameters - first) / (last - first) * (high - low), low, high)
     return request.restored(shape), parameters, match.figures(request, *notes)
