@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import minimize
 
 import bladewright as bw
-from bladewright.fitting.freeform.net import Net
+from bladewright.fitting.freeform.net import net_of
 from bladewright.fitting.freeform.search import Problem, matched, placed
 from bladewright.nurbs.basis import uniform_knots
 from bladewright.nurbs.closest import closest_on_curve
@@ -148,14 +148,14 @@ def test_points_far_away_and_in_another_unit_are_fitted_alike():
 def test_the_gradient_is_that_of_central_differences(weighted, closed, power):
     rng = np.random.default_rng(1)
     angle = np.arange(6) / 6 * 2 * np.pi
-    net = Net(
-        knots=(uniform_knots(9 if closed else 6, 3),),
-        degrees=(3,),
+    count = 9 if closed else 6
+    pattern = bw.Curve(control_points=np.zeros((count, 3)), knots=uniform_knots(count, 3), degree=3)
+    net = replace(
+        net_of(pattern, closed=closed),
         points=np.stack([np.cos(angle), np.sin(angle), 0.3 * rng.normal(size=6)], axis=-1),
         log_weights=0.2 * rng.normal(size=6) if weighted else np.zeros(6),
         weighted=weighted,
         boundary="free" if closed else "corners",
-        closed=closed,
     )
     points = net.shape(rng.random(40)) + 0.02 * rng.normal(size=(40, 3))
     match = replace(placed(net, points), weights=rng.random(40), power=power, scale=0.05)
@@ -176,13 +176,8 @@ def test_the_gradient_is_that_of_central_differences(weighted, closed, power):
 
 
 def test_without_unknowns_a_match_is_a_projection():
-    net = Net(
-        knots=(np.array([0.0, 0.0, 1.0, 1.0]),),
-        degrees=(1,),
-        points=np.array([[0.0, 0.0], [3.0, 3.0]]),
-        log_weights=np.zeros(2),
-        boundary="fixed",
-    )
+    line = bw.Curve(control_points=[[0.0, 0.0], [3.0, 3.0]], knots=[0.0, 0.0, 1.0, 1.0], degree=1)
+    net = replace(net_of(line), boundary="fixed")
     assert not net.free.any()
     found = matched(placed(net, np.array([[0.5, 0.6], [1.0, 1.5], [2.0, 2.2]])), 0.0)
     assert found.converged

@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from bladewright.errors import FitError
-from bladewright.fitting.clouds.cloud import checked_cloud, pitch_found, refuse_hidden_blade, refuse_several_blades
+from bladewright.fitting.clouds.cloud import checked_cloud, different_points, pitch_found, refuse_several_blades
 
 ANGLES = np.linspace(0.0, 2.0 * np.pi, 400, endpoint=False)
 SECTION = 0.05 * np.stack([np.cos(ANGLES), 0.2 * np.sin(ANGLES) + 0.3 * np.cos(ANGLES) ** 2], axis=-1)
@@ -27,7 +27,7 @@ def test_a_whole_blade_is_taken_as_it_is(cloud: np.ndarray) -> None:
     [
         ([["a", "b"]] * 200, "are not numbers"),
         (np.zeros((200, 4)), "the shape"),
-        (HOLED, "the first of them point 7"),
+        (HOLED, "the first of them row 7"),
         (SECTION[:23], "23 different points"),
         (BLADE[:99], "99 different points"),
         (np.repeat(BLADE[:50], 4, axis=0), "50 different points"),
@@ -58,9 +58,9 @@ def test_several_blades_are_refused_with_their_pitch(cloud: np.ndarray, pitch: s
 
 
 def test_a_blade_that_hardly_shows_beside_its_walls_is_refused_with_the_number_of_its_points() -> None:
-    refuse_hidden_blade(BLADE[:100], 5000)
-    with pytest.raises(FitError, match=r"99 of 5000 points lie on the blade's sides.*at least 100 are needed"):
-        refuse_hidden_blade(BLADE[:99], 5000)
+    assert len(different_points(BLADE[:100], " on the sides")) == 100
+    with pytest.raises(FitError, match=r"99 different points on the sides: at least 100 are needed"):
+        different_points(BLADE[:99], " on the sides")
 
 
 def test_sections_along_y_are_no_copies_along_the_pitch() -> None:

@@ -265,7 +265,7 @@ def test_a_blade_in_a_flow_path_is_found_again_from_a_start_and_its_flow_path_st
     [
         (np.ones(9), {}, "shape"),
         (np.ones((9, 4)), {}, "shape"),
-        (np.where(np.arange(400)[:, None] == 7, np.nan, cloud(0, 400)), {}, "point 7"),
+        (np.where(np.arange(400)[:, None] == 7, np.nan, cloud(0, 400)), {}, "row 7"),
         (cloud(0, 400)[:20], {}, "at least 24"),
         (cloud(0, 400), {"tolerance": 1e-5, "parameters": 22}, "both given"),
         (cloud(0, 400), {"tolerance": -1.0}, "tolerance is -1.0"),

@@ -1,10 +1,12 @@
 """Surfaces fitted to scattered points."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import bladewright as bw
-from bladewright.fitting.freeform.net import Net
+from bladewright.fitting.freeform.net import net_of
 from bladewright.fitting.freeform.search import Problem, placed
 from bladewright.nurbs.basis import uniform_knots
 from bladewright.nurbs.closest import closest_on_surface
@@ -82,13 +84,8 @@ def test_held_boundaries_do_not_move():
 def test_the_gradient_is_that_of_central_differences(weighted):
     rng = np.random.default_rng(1)
     surface = bent_surface()
-    net = Net(
-        knots=(surface.knots_u, surface.knots_v),
-        degrees=(3, 3),
-        points=surface.control_points.reshape(-1, 3).copy(),
-        log_weights=0.2 * rng.normal(size=20) if weighted else np.zeros(20),
-        weighted=weighted,
-    )
+    logs = 0.2 * rng.normal(size=20) if weighted else np.zeros(20)
+    net = replace(net_of(surface), log_weights=logs, weighted=weighted)
     points = net.shape(U[:60], V[:60]) + 0.02 * rng.normal(size=(60, 3))
     problem = Problem(placed(net, points), stiffness=1e-3)
     exact = problem.derivatives(problem.start)[0].T @ problem.values(problem.start)[0]

@@ -1,22 +1,22 @@
 """Checks of the arguments of fits; each refusal names the argument, its value and what is needed."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
 from contextlib import contextmanager
 from numbers import Integral, Real
 from typing import Any
 
 import numpy as np
 
-from bladewright.errors import DesignError, FitError
+from bladewright.errors import DesignError, FitError, GeometryError
 from bladewright.nurbs.basis import Reals
 
 
 @contextmanager
 def refusing() -> Iterator[None]:
-    """Make refusals of values that no design can have those of a fit."""
+    """Make refusals of values that no design, curve or surface can have those of a fit."""
     try:
         yield
-    except DesignError as error:
+    except (DesignError, GeometryError) as error:
         raise FitError(str(error)) from error
 
 
@@ -60,6 +60,20 @@ def reals(what: str, given: Any, cure: str) -> Reals:
     if np.iscomplexobj(found) and np.any(found.imag):
         raise FitError(f"{what} are complex, and an imaginary part is not zero: {cure}")
     return real
+
+
+def checked_points(what: str, given: Any, dimensions: Container[int], needed: str) -> Reals:
+    """The finite points (n, d) that were given, with d among the dimensions; raises FitError for anything else."""
+    points = reals(what, given, needed)
+    if points.ndim != 2 or points.shape[1] not in dimensions:
+        raise FitError(f"{what} have the shape {points.shape}: {needed}")
+    wrong = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    if len(wrong):
+        raise FitError(
+            f"{len(wrong)} of the {len(points)} rows of {what} are not finite, the first of them row {wrong[0]} "
+            f"({points[wrong[0]].tolist()}): leave them out"
+        )
+    return points
 
 
 def texts(name: str, given: Any) -> tuple[str, ...]:

@@ -21,7 +21,7 @@ from bladewright.fitting.assessment.acceptance import Acceptance, MatchTarget, t
 from bladewright.fitting.assessment.measurement import Measurement, PlacesOfPoints, measured, parameter_estimates
 from bladewright.fitting.assessment.result import Fit, Motion
 from bladewright.fitting.checks import check_positive, check_progress, reals, refusing
-from bladewright.fitting.clouds.cloud import checked_cloud, different_points, refuse_hidden_blade, refuse_several_blades
+from bladewright.fitting.clouds.cloud import checked_cloud, different_points, refuse_several_blades
 from bladewright.fitting.clouds.thinning import MOST_POINTS, isolated_points, random_subset, without_copies
 from bladewright.fitting.clouds.walls import walls_of
 from bladewright.fitting.families.blades import matched_blade
@@ -147,7 +147,7 @@ def fit(
         )
         walls = walls_of(every.points, header.arrangement or getattr(start or like, "arrangement", None))
         shown, hidden = shown_of(every, start, finishing, free_parameters, walls)
-        refuse_hidden_blade(shown.points, len(points))
+        different_points(shown.points, " on the blade's sides, off hub, shroud, fillets and cuts")
         refuse_several_blades(every.points[walls.kinds != "wall"])
         return PlacedTask(motion=motion, notes=notes, start=start, every=every, shown=shown, hidden=hidden)
 

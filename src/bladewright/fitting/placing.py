@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import orth
 
 from bladewright.blade.design.row_design import RowDesign
 from bladewright.designs import Design, unit_at
@@ -30,16 +31,12 @@ from bladewright.fitting.matching.noise import EXACT
 from bladewright.fitting.matching.residuals import MERIDIANS
 from bladewright.fitting.matching.search import QUICK_ROUNDS, ROUGH_REDUCTION, Match, Task, searched
 from bladewright.fitting.model_selection.selection import QUICK_POINTS
-from bladewright.fitting.registration import OTHER_BLADE_NOTE, WEAKEST_FREEDOM, motion_by, motion_rates, motion_scale
+from bladewright.fitting.registration import OTHER_BLADE_NOTE, WEAKEST_FREEDOM, motion_by, motion_rates
 
 MOST_REALIGNMENTS = 4
 """realignments at most: a match follows each, and they bound the time to five matches (design/matching_constants.md)"""
 GAIN = 0.9
 """ratio of misfits after and before a realignment from which it is not worth a match (design/matching_constants.md)"""
-LONGEST_STEP = 0.2
-"""longest step of the motion, of the cloud's extent: residuals are nearly linear (design/matching_constants.md)"""
-WEAKEST_SLOPE = 1e-10
-"""singular value of the slopes, of the largest, below which it is rounding (design/matching_constants.md)"""
 ON_CUT = 1e-3
 """distance from a cut, of the cloud's extent, within which points may lie on its face (design/matching_constants.md)"""
 CUT_PLACES = {"hub": "hub", "tip": "shroud", **{edge: edge for edge in EDGES}}
@@ -167,15 +164,14 @@ def realigned(turns: list[PlacedTask], found: Matched, place: Place, match: Call
     """The nearest of matches that follow steps of the motion, while misfits fall; `turns` holds the tasks so far."""
     for _ in range(MOST_REALIGNMENTS):
         here, before = turns[-1], found[0]
-        step = _step_beside(before) if before.has_systematic_misfit else None
-        if here.motion is None or step is None:
+        step = _step_beside(before)
+        if step is None:
             break
         here.every.progress("axes")
         notes = tuple(each for each in here.notes if not each.startswith(OTHER_BLADE_NOTE))
         try:
-            there = place(step.after(here.motion), before.design, notes)
-            turns.append(there)
-            nearer = match(there)
+            turns.append(place(step.after(here.motion), before.design, notes))
+            nearer = match(turns[-1])
         except (DesignError, FitError):
             nearer = found
         if nearer[0].mean_distance >= before.mean_distance:
@@ -190,24 +186,16 @@ def _step_beside(found: Match) -> Motion | None:
     problem, cloud = found.problem, found.problem.cloud_residuals
     z = problem.vector(found.design)
     values, derivatives = problem.values(z), problem.derivatives(z)
-    if values is None or derivatives is None:
+    if not found.has_systematic_misfit or values is None or derivatives is None:
         return None
-    slopes = derivatives[0][:, problem.scales.inside(problem.values_of(found.design))]
-    pivot, size = np.mean(cloud.points, axis=0), float(np.max(np.ptp(cloud.points, axis=0)))
-    scale = motion_scale(cloud.points.shape[1], size)
-    moving = np.zeros((len(values[0]), len(scale)))
-    rates = cloud.motion_slopes(found.state, motion_rates(cloud.points, pivot))
-    moving[: len(rates)] = rates * scale
-    shape, weight, _ = np.linalg.svd(slopes, full_matrices=False)
-    shape = shape[:, weight > WEAKEST_SLOPE * np.max(weight, initial=0.0)]
-    rows, left = (each - shape @ (shape.T @ each) for each in (moving, values[0]))
-    across, weight, turned = np.linalg.svd(rows, full_matrices=False)
-    parts = -(across.T @ left) / np.maximum(weight, WEAKEST_FREEDOM * weight[0])
-    # what the shape takes away least comes first: the rest may need a step that is no small one
-    near = (np.sqrt(np.cumsum(parts**2)) < LONGEST_STEP * size) & (weight > WEAKEST_FREEDOM * weight[0])
-    change = turned.T @ np.where(near, parts, 0.0)
-    after = left + rows @ change
-    return None if np.sqrt(after @ after / (values[0] @ values[0])) > GAIN else motion_by(scale * change, pivot)
+    shape = orth(derivatives[0][:, problem.scales.inside(problem.values_of(found.design))])
+    moving = cloud.motion_slopes(found.state, motion_rates(cloud.points))
+    moving = np.pad(moving, ((0, len(shape) - len(moving)), (0, 0)))
+    # of residuals and their slopes, what no change of the shape takes away
+    left, slopes = (each - shape @ (shape.T @ each) for each in (values[0], moving))
+    change = np.linalg.lstsq(slopes, -left, rcond=WEAKEST_FREEDOM)[0]
+    after = left + slopes @ change
+    return None if np.sqrt(after @ after / (values[0] @ values[0])) > GAIN else motion_by(change, cloud.points)
 
 
 def nearest_of(turns: list[PlacedTask], most: int) -> tuple[PlacedTask, Match, Any] | None:

@@ -1,11 +1,11 @@
 """The motion that brings a cloud into the machine's axes: onto a design's blade, about a named axis, or of a prism.
 
 Onto a blade or section it is found by iterative closest points. The starts are the turns of a cube, or a square, that
-lay the cloud's principal axes on the blade's. Each is followed with the nearest of many samples of the blade, first
-point to point (Besl and McKay 1992), then point to plane (Chen and Medioni 1992); the best, and others about as near,
-are followed with true footpoints. Every step is one of Gauss and Newton with Tukey's weights (Beaton and Tukey 1974),
-whose width shrinks to what the noise needs (graduated non-convexity, Blake and Zisserman 1987): the few points at the
-ends, which alone hold a prismatic blade along its span, take part before they could be taken for outliers.
+lay the cloud's principal axes on the blade's. Each is followed with the nearest of many samples of the blade, point to
+point (Besl and McKay 1992); the best, and others about as near, are followed with true footpoints, point to plane (Chen
+and Medioni 1992), by steps of Gauss and Newton. All have Tukey's weights (Beaton and Tukey 1974), whose width at last
+shrinks to what the noise needs (graduated non-convexity, Blake and Zisserman 1987): the few points at the ends, which
+alone hold a prismatic blade along its span, take part before they could be taken for outliers.
 """
 
 from collections.abc import Callable, Sequence
@@ -34,6 +34,8 @@ SAMPLES = 8000
 """evenly spread samples, as near to each other as true footpoints need to start (design/matching_constants.md)"""
 SEARCH_POINTS, DECIDING_POINTS = 300, 3000
 """points that choose among starts, and that follow the nearest; they bound the time (design/matching_constants.md)"""
+ROUGH_STEPS = 30
+"""steps with closest samples (design/matching_constants.md)"""
 FIRST_WIDTH, SHRINKING = 0.05, 4.0
 """first width of weights, of the blade's extent; largest ratio of two in turn (design/matching_constants.md)"""
 LEAST_WIDTH, LAST_STEP = 1e-8, 1e-4
@@ -59,8 +61,8 @@ TURN_AXES = {2: np.eye(3)[2:], 3: np.eye(3)}
 CUBE = {2: Rotation.create_group("C4"), 3: Rotation.create_group("O")}
 """turns of a square and a cube, by dimension"""
 
-Contact = tuple[Reals, NDArray[np.intp], Reals]
-"""Where n points touch the blade: (n, d) from the nearest places to the points, the (m,) points of the m directions in
+Touching = Callable[[Reals], tuple[Reals, NDArray[np.intp], Reals]]
+"""where n points touch the blade: (n, d) from the nearest places to the points, the (m,) points of the m directions in
 which they are held there, and these, unit vectors (m, d)"""
 
 
@@ -73,16 +75,15 @@ def registrations(points: Reals, design: Design) -> list[tuple[Motion, tuple[str
     few = without_isolated_points(points[random_subset(len(points), MOST_POINTS)])
     few = few[even_subset(few, SEARCH_POINTS)]
 
-    def touching(moved: Reals) -> Contact:
+    def touching(moved: Reals) -> tuple[Reals, NDArray[np.intp], Reals]:
         found = nearest_footpoints(moved, sides)
         past = np.flatnonzero(np.any(found.beyond != 0.0, axis=1))
         rows = np.concatenate([np.arange(len(moved)), past])
         return found.miss, rows, np.concatenate([found.normals, found.beyond[past]])
 
     some = points[random_subset(len(points), DECIDING_POINTS)]
-    tree = cKDTree(samples.points)
     starts = _starts(few, samples.points)
-    tried = sorted((_rough(few, samples, tree, start, extent) for start in starts), key=lambda each: each[0])
+    tried = sorted((_rough(few, samples, start, extent) for start in starts), key=lambda each: each[0])
     apart = list[Motion]()
     for off, motion in tried:
         same = (np.max(length(motion(few) - other(few))) < FIRST_WIDTH * extent for other in apart)
@@ -90,21 +91,7 @@ def registrations(points: Reals, design: Design) -> list[tuple[Motion, tuple[str
             apart.append(motion)
     found = [_followed(some, motion, touching, extent) for motion in apart]
     chord = float(np.real(built.chord))
-    return [(motion, _notes(motion(some), touching(motion(some)), extent, chord)) for motion in found]
-
-
-def _followed(points: Reals, motion: Motion, touching: Callable[[Reals], Contact], extent: float) -> Motion:
-    """The motion that true footpoints of points (n, d) lead to, with ever narrower weights."""
-    width = FIRST_WIDTH * extent
-    for _ in range(MOST_STEPS):
-        moved = motion(points)
-        contact = touching(moved)
-        needed = max(TUKEY_WIDTH * median_deviation(length(contact[0])), LEAST_WIDTH * extent)
-        motion = _step(moved, contact, width, extent).after(motion)
-        if width <= needed and np.max(np.abs(motion(points) - moved)) < LAST_STEP * needed:
-            break
-        width = max(needed, width / SHRINKING)
-    return motion
+    return [(motion, _notes(motion(some), touching, extent, chord)) for motion in found]
 
 
 def _samples(sides: Sequence[Side], dimension: int) -> Footpoints:
@@ -127,53 +114,57 @@ def _starts(cloud: Reals, samples: Reals) -> list[Motion]:
     return [Motion(rotation=each, translation=centre - each @ pivot) for each in rotations]
 
 
-def _rough(points: Reals, samples: Footpoints, tree: cKDTree, motion: Motion, extent: float) -> tuple[float, Motion]:
-    """The motion that closest samples lead to, point to point, then point to plane, and the mean distance there."""
-    dimension, every = points.shape[1], np.arange(len(points))
-    spacing = float(np.max(tree.query(samples.points, k=2)[0]))
-
-    def contact(moved: Reals, *, planes: bool) -> Contact:
-        index = tree.query(moved)[1]
-        miss = moved - samples.points[index]
-        if planes:
-            return miss, every, samples.normals[index]
-        return miss, np.repeat(every, dimension), np.tile(np.eye(dimension), (len(points), 1))
-
-    for planes, steps in ((False, 6), (True, 24)):
-        # tangent planes turn by about so much from sample to sample, and hold a prism along its span by no more
-        weakest = spacing / extent if planes else WEAKEST_FREEDOM
-        for _ in range(steps):
-            moved = motion(points)
-            motion = _step(moved, contact(moved, planes=planes), 0.0, extent, weakest).after(motion)
-    miss, _, directions = contact(motion(points), planes=True)
-    distances = length(miss)
+def _rough(points: Reals, samples: Footpoints, motion: Motion, extent: float) -> tuple[float, Motion]:
+    """The motion that closest samples lead to, and the mean distance of the points from the planes through these."""
+    tree = cKDTree(samples.points)
+    for _ in range(ROUGH_STEPS):
+        distances, index = tree.query(motion(points))
+        weights = tukey_weights(distances, TUKEY_WIDTH * median_deviation(distances))
+        motion = _laid(points, samples.points[index], weights)
+    distances, index = tree.query(motion(points))
+    heights = np.sum(samples.normals[index] * (motion(points) - samples.points[index]), axis=1)
     # between samples only the distance from the tangent plane says how far a point is off
-    aside = np.where(distances > spacing, distances, np.abs(np.sum(directions * miss, axis=1)))
+    aside = np.where(distances > np.max(tree.query(samples.points, k=2)[0]), distances, np.abs(heights))
     return float(np.mean(np.minimum(aside, FIRST_WIDTH * extent))), motion
 
 
-def _equations(moved: Reals, contact: Contact, width: float, extent: float) -> tuple[Reals, Reals]:
-    """Weighted rows (m, k) of what turns about the middle and shifts, as lengths, do to distances; right sides (m,)."""
-    miss, rows, directions = contact
+def _laid(points: Reals, goals: Reals, weights: Reals) -> Motion:
+    """The motion of points (n, d) nearest to goals (n, d) by weighted least squares (Kabsch 1976)."""
+    pivot, centre = (np.average(each, axis=0, weights=weights) for each in (points, goals))
+    left, _, right = np.linalg.svd((weights[:, None] * (goals - centre)).T @ (points - pivot))
+    left[:, -1] *= np.sign(np.linalg.det(left) * np.linalg.det(right))
+    return Motion(rotation=left @ right, translation=centre - left @ right @ pivot)
+
+
+def _followed(points: Reals, motion: Motion, touching: Touching, extent: float) -> Motion:
+    """The motion that true footpoints of points (n, d) lead to, with ever narrower weights."""
+    width = FIRST_WIDTH * extent
+    for _ in range(MOST_STEPS):
+        moved = motion(points)
+        rows, right, distances = _equations(moved, touching, width)
+        change = np.asarray(np.linalg.lstsq(rows, right, rcond=WEAKEST_FREEDOM)[0], dtype=np.float64)
+        motion = motion_by(change, moved).after(motion)
+        needed = max(TUKEY_WIDTH * median_deviation(distances), LEAST_WIDTH * extent)
+        if width <= needed and np.max(np.abs(motion(points) - moved)) < LAST_STEP * needed:
+            break
+        width = max(needed, width / SHRINKING)
+    return motion
+
+
+def _equations(moved: Reals, touching: Touching, width: float) -> tuple[Reals, Reals, Reals]:
+    """Weighted rows (m, k) of what motions do to distances, right sides (m,), and the distances (n,)."""
+    miss, rows, directions = touching(moved)
     distances = length(miss)
     # no narrower than the points' own distances call for
     root = np.sqrt(tukey_weights(distances, max(width, TUKEY_WIDTH * median_deviation(distances))))[rows]
-    rates = motion_rates(moved, np.mean(moved, axis=0))[rows] * motion_scale(moved.shape[1], extent)
-    return np.einsum("md,mdk->mk", directions, rates) * root[:, None], -np.sum(directions * miss[rows], axis=1) * root
+    slopes = np.einsum("md,mdk->mk", directions, motion_rates(moved)[rows])
+    return slopes * root[:, None], -np.sum(directions * miss[rows], axis=1) * root, distances
 
 
-def _step(moved: Reals, contact: Contact, width: float, extent: float, weakest: float = WEAKEST_FREEDOM) -> Motion:
-    """The step of Gauss and Newton, in the degrees of freedom that the points determine."""
-    rows, right = _equations(moved, contact, width, extent)
-    change = motion_scale(moved.shape[1], extent) * np.linalg.lstsq(rows, right, rcond=weakest)[0]
-    return motion_by(change, np.mean(moved, axis=0))
-
-
-def _notes(moved: Reals, contact: Contact, extent: float, chord: float) -> tuple[str, ...]:
+def _notes(moved: Reals, touching: Touching, extent: float, chord: float) -> tuple[str, ...]:
     """What there is to say where the points do not determine the motion, or are of another blade."""
-    distances = length(contact[0])
+    rows, right, distances = _equations(moved, touching, LEAST_WIDTH * extent)
     share, typical = float(np.mean(distances <= OTHER_BLADE * chord)), median_deviation(distances)
-    rows, right = _equations(moved, contact, LEAST_WIDTH * extent, extent)
     deviation = np.sqrt(np.sum(right**2) / max(1, int(np.count_nonzero(right)) - rows.shape[1]))
     _, values, across = np.linalg.svd(rows, full_matrices=False)
     weak = across[values <= max(WEAKEST_FREEDOM * values[0], deviation / (LARGEST_DEVIATION * extent))]
@@ -191,26 +182,21 @@ def _notes(moved: Reals, contact: Contact, extent: float, chord: float) -> tuple
     return tuple(notes)
 
 
-def motion_rates(points: Reals, pivot: Reals) -> Reals:
-    """Rates (n, d, k) of points (n, d) by turns about a pivot and shifts."""
+def motion_rates(points: Reals) -> Reals:
+    """Rates (n, d, k) of points (n, d) by turns about their mean, in radians times their extent, and by shifts."""
     count, dimension = points.shape
-    arm = np.pad(points - pivot, ((0, 0), (0, 3 - dimension)))
+    arm = np.pad(points - np.mean(points, axis=0), ((0, 0), (0, 3 - dimension))) / np.max(np.ptp(points, axis=0))
     turns = np.cross(TURN_AXES[dimension], arm[:, None])[..., :dimension]
     shifts = np.broadcast_to(np.eye(dimension), (count, dimension, dimension))
     return np.concatenate([np.moveaxis(turns, 1, 2), shifts], axis=2)
 
 
-def motion_by(change: Reals, pivot: Reals) -> Motion:
-    """The motion by turns about a pivot (d,), and shifts (k,)."""
-    dimension = len(pivot)
-    turn = change[:-dimension] @ TURN_AXES[dimension]
+def motion_by(change: Reals, points: Reals) -> Motion:
+    """The motion by a change (k,) of what `motion_rates` of the points are rates of."""
+    pivot, dimension = np.mean(points, axis=0), points.shape[1]
+    turn = change[:-dimension] @ TURN_AXES[dimension] / np.max(np.ptp(points, axis=0))
     rotation = np.asarray(Rotation.from_rotvec(turn).as_matrix())[:dimension, :dimension]
     return Motion(rotation=rotation, translation=pivot - rotation @ pivot + change[-dimension:])
-
-
-def motion_scale(dimension: int, extent: float) -> Reals:
-    """Scales (k,) of the degrees of freedom by which all are lengths."""
-    return np.concatenate([np.full(len(TURN_AXES[dimension]), 1.0 / extent), np.ones(dimension)])
 
 
 AXES_POINTS = 2000

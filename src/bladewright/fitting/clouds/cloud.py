@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from bladewright.domain.row import turn_matrix
 from bladewright.errors import FitError
-from bladewright.fitting.checks import reals
+from bladewright.fitting.checks import checked_points
 from bladewright.fitting.clouds.thinning import MOST_POINTS, even_subset, groups, random_subset
 from bladewright.nurbs.basis import Reals
 
@@ -44,17 +44,8 @@ def checked_cloud(cloud: ArrayLike) -> Reals:
     Raises FitError for anything but finite numbers in two or three columns, fewer than 24 different points (100 in
     space), points on one line or one plane, and one side of a blade only.
     """
-    points = reals("the points of the cloud", cloud, "give (n, 2) or (n, 3) in metres")
-    if points.ndim != 2 or points.shape[1] not in (2, 3):
-        raise FitError(
-            f"the cloud has the shape {points.shape}: give (n, 2) with x and y, or (n, 3) with x, y and z, in metres"
-        )
-    bad = ~np.all(np.isfinite(points), axis=1)
-    if np.any(bad):
-        raise FitError(
-            f"{np.count_nonzero(bad)} of {len(points)} points are not finite numbers, the first of them point "
-            f"{int(np.argmax(bad))}: leave them out"
-        )
+    needed = "give (n, 2) with x and y, or (n, 3) with x, y and z, in metres"
+    points = checked_points("the points of the cloud", cloud, (2, 3), needed)
     different, dimension = different_points(points), points.shape[1]
     spread = np.linalg.svd(different - np.mean(different, axis=0), compute_uv=False)
     if spread[1] < FLATTEST * spread[0]:
@@ -66,7 +57,7 @@ def checked_cloud(cloud: ArrayLike) -> Reals:
             f"all {len(points)} points lie on one plane: give two columns, x and y, for a section, or points of "
             "sections at several places along the span"
         )
-    if is_one_sided(different[np.random.default_rng(0).permutation(len(different))[:SHEET_SAMPLE]]):
+    if is_one_sided(different[random_subset(len(different), SHEET_SAMPLE)]):
         raise FitError(
             "the cloud holds one side of a blade alone, a sheet without thickness: give the points of both sides"
         )
@@ -74,7 +65,7 @@ def checked_cloud(cloud: ArrayLike) -> Reals:
 
 
 def different_points(points: Reals, kind: str = "") -> Reals:
-    """The different ones of points (n, 2) or (n, 3), thinned; raises FitError where these of a `kind` are too few."""
+    """The different ones of points (n, 2) or (n, 3) of a `kind`, thinned; raises FitError where they are too few."""
     different = np.unique(points[random_subset(len(points), MOST_POINTS)], axis=0)
     fewest = FEWEST_POINTS[points.shape[1]]
     if len(different) < fewest:
@@ -87,22 +78,12 @@ def different_points(points: Reals, kind: str = "") -> Reals:
 
 def refuse_several_blades(points: Reals) -> None:
     """Raise FitError where points (n, 2) or (n, 3) [m] in the machine's axes are of two blades or more."""
-    found = pitch_found(np.unique(points[random_subset(len(points), MOST_POINTS)], axis=0))
+    found = pitch_found(different_points(points))
     if found is not None:
         columns = ", or, where it is one, say which column is which (--columns): x must be the machine axis"
         raise FitError(
             f"the cloud holds two blades or more: {found} along the pitch lies the same shape again; give the points "
             f"of one blade{columns if points.shape[1] == 3 else ''}"
-        )
-
-
-def refuse_hidden_blade(shown: Reals, count: int) -> None:
-    """Raise FitError where of `count` points too few are `shown` (n, d) [m]: off hub, shroud, fillets and cuts."""
-    fewest = FEWEST_POINTS[shown.shape[1]]
-    if len(shown) < fewest:
-        raise FitError(
-            f"{len(shown)} of {count} points lie on the blade's sides, the others on hub, shroud, fillets or cuts: at "
-            f"least {fewest} are needed; give more points of the sides"
         )
 
 
@@ -149,14 +130,11 @@ def _pieces(points: Reals) -> list[NDArray[np.intp]]:
 
 def _moved_onto(piece: Reals, other: Reals) -> tuple[float, str] | None:
     """How far [m] a piece must be moved along y, or turned about x, to lie on another one; None where neither works."""
-    if not 0.6 < len(piece) / len(other) < 1.7:
-        return None
     tree = cKDTree(other)
     near = SAME_SHAPE * float(np.sqrt(np.sum(np.ptp(piece, axis=0) ** 2)))
     near += 1.5 * float(np.median(tree.query(other, k=2)[0][:, 1]))
-    step = np.zeros(piece.shape[1])
-    step[1] = np.mean(other[:, 1]) - np.mean(piece[:, 1])
-    moved = [(piece + step, abs(float(step[1])), f"{abs(float(step[1])):.4g} m")]
+    step = float(np.mean(other[:, 1]) - np.mean(piece[:, 1]))
+    moved = [(piece + step * np.eye(piece.shape[1])[1], abs(step), f"{abs(step):.4g} m")]
     if piece.shape[1] == 3:
         angles = [np.arctan2(np.mean(p[:, 1]), np.mean(p[:, 2])) for p in (piece, other)]
         turn = float((angles[1] - angles[0] + np.pi) % (2.0 * np.pi) - np.pi)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sized
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any, Literal, final
 
@@ -13,16 +14,17 @@ from scipy.spatial import ConvexHull, cKDTree
 from scipy.spatial.distance import cdist
 
 from bladewright.errors import FitError, GeometryError
-from bladewright.fitting.checks import check_kind, check_whole
+from bladewright.fitting.checks import check_kind, check_whole, reals, refusing
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.freeform.fits import FreeformFit, Request
-from bladewright.fitting.freeform.net import DIRECTIONS, first_net, matched_within, net_of
+from bladewright.fitting.freeform.net import DIRECTIONS, Net, laid, matched_net, net_of
 from bladewright.numerics.elementary import cumulative_length
 from bladewright.numerics.single_thread import single_threaded
-from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.basis import Reals, uniform_knots
 from bladewright.nurbs.closest import Descents
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import extended, reparametrised
+from bladewright.nurbs.refine import direction_of
 from bladewright.nurbs.surface import Surface
 
 GRID_CELLS = 150
@@ -66,44 +68,79 @@ def fit_curve(
     are apart; where it does not, give `start`, whose degree, knots, control points and weights are then the first ones.
 
     `knots` are uniform by default; those of a closed curve are the n + 1 distinct ones of a period. `weights` are one,
-    (n,) given ones, or `free`; free ones are positive, and the mean of their logarithms is zero (without inner knots
-    their logarithms have no linear trend either), which leaves out what changes no shape. `ends` of an open curve are
-    `fixed` at the first and the last point along it, `free` (the ends are matched to these points as others to their
-    nearest places), or two points. `power` 2 is least squares, 4 the objective of the source. Where the points leave
-    control points open, the bending decides. With `tolerance` (in the unit of the points) knots are added where
-    the deviation is until no inlier is further away; notes say where noise stops it. `robust` finds outliers and leaves
-    them out.
+    (n,) given ones, or `free`: positive ones, of whose logarithms mean and, without inner knots, linear trend are zero,
+    as these change no shape. `ends` of an open curve are `fixed` at the first and the last point along it, two points,
+    or `free`: where the nearest places end, by which inner knots move a little. `power` 2 is least squares, 4 the
+    objective of the source. Where the points leave control points open, the bending decides. With `tolerance` (in the
+    unit of the points) knots are added where the deviation is until no inlier is further away; notes say where noise
+    stops it. `robust` leaves outliers out.
 
-    Raises FitError where points are too few, not finite or all the same, or a choice is unknown. Source: the objective
-    and its 'true distance by Newton' of the freeform NURBS blading paper, section 4.1, here with exact derivatives (a
-    point is linear in the control points; at its nearest place the distance does not change with the parameter) and
-    Levenberg-Marquardt steps in place of finite differences.
+    Raises FitError where points are too few, not finite or all the same, or a choice is unknown. Source: the freeform
+    NURBS blading paper, section 4.1 (true distances by Newton), here with exact derivatives and Levenberg-Marquardt
+    steps in place of finite differences.
     """
-    request = Request(
-        "a curve", points, weights=weights, power=power, robust=robust, tolerance=tolerance, progress=progress
-    )
+    request = Request("a curve", points, power, tolerance, progress, weights=weights, robust=robust)
     check_whole(degree=degree, control_points=control_points)
     check_kind(start, Curve)
     if closed and not (isinstance(ends, str) and ends == "fixed"):
         raise FitError("closed and ends are both given: a closed curve has no ends; leave one out")
-    pair, scaled = request.ends(ends), request.scaled(request.points)
+    pair, scaled = request.ends(ends), request.points
     if start is None:
         shares = sites_along(scaled, closed=closed)
-        own = None if knots is None else (knots,)
-        net = first_net(scaled, shares[:, None], (degree,), (control_points,), own, weights, closed=closed)
+        with refusing():
+            own = _knots(knots, control_points, degree, closed=closed)
+            flat = Curve(control_points=np.zeros((len(own) - degree - 1, scaled.shape[1])), knots=own, degree=degree)
+            net = laid(net_of(flat, closed=closed), scaled, shares[:, None], weights)
     else:
         net = net_of(replace(start, control_points=request.scaled(start.control_points)), closed=closed)
         shares = net.nearest(scaled)[:, 0]
+    if not closed and not (pair is None and ends == "free"):
+        first, last = scaled[[np.argmin(shares), np.argmax(shares)]] if pair is None else pair
+        net = replace(net, boundary="corners", points=np.stack([first, *net.points[1:-1], last]))
+    curve, parameters, figures = _matched(net, request, warm=start is not None)
+    return CurveFit(curve=curve, u=parameters[:, 0], **figures)
+
+
+def _matched(net: Net, request: Request, *, warm: bool) -> tuple[Any, Reals, dict[str, Any]]:
+    """The curve or surface of a match, the parameters (n, k) of the nearest places, and the figures.
+
+    A free boundary is continued while it moves, as one that moves inwards past a point is a wall for the descent:
+    hundreds of steps where a dozen are enough. At last it is cut where the places end.
+    """
+    low, high = net.domain
+    free = net.boundary == "free" and not net.closed
+    if free:
+        # weights that fall towards an edge would not stay positive past it
+        with suppress(GeometryError):
+            net = net_of(_over(net.shape, low - MARGIN * (high - low), high + MARGIN * (high - low)))
+    match, notes = matched_net(net, request, warm=warm)
+    shape, parameters = match.shape.shape, match.parameters
+    if free:
+        inner = parameters[match.inliers]
+        first, last = np.min(inner, axis=0), np.max(inner, axis=0)
+        shape = _over(shape, first, last)
+        parameters = np.clip(low + (parameters - first) / (last - first) * (high - low), low, high)
+    return request.restored(shape), parameters, match.figures(request, *notes)
+
+
+def _over(shape: Any, first: Reals, last: Reals) -> Any:
+    """A curve or surface from its first to its last parameters (k,), where it is cut or continued; its domain stays."""
+    for direction, start, end in zip(DIRECTIONS, first, last, strict=False):
+        knots, _ = direction_of(shape, direction)
+        shape = reparametrised(extended(shape, float(start), float(end), direction), knots[0], knots[-1], direction)
+    return shape
+
+
+def _knots(given: ArrayLike | None, count: int, degree: int, *, closed: bool = False) -> Reals:
+    """Clamped knots, uniform or as given; those given of a closed curve are the distinct ones of a period."""
+    own = None if given is None else np.atleast_1d(reals("knots", given, "give an increasing list"))
+    uniform = uniform_knots(count if own is None else len(own) - (1 if closed else degree + 1), degree)
     if not closed:
-        outermost = int(np.argmin(shares)), int(np.argmax(shares))
-        if pair is None and ends == "free":
-            net = replace(net, ends=outermost)
-        else:
-            first, last = scaled[list(outermost)] if pair is None else pair
-            net = replace(net, boundary="corners", points=np.stack([first, *net.points[1:-1], last]))
-    match, notes = matched_within(net, scaled, request, warm=start is not None)
-    curve = request.restored(match.shape.shape)
-    return CurveFit(curve=curve, u=match.parameters[:, 0], **match.figures(request, *notes))
+        return uniform if own is None else own
+    period = np.linspace(0.0, 1.0, count + 1) if own is None else own
+    if not (np.diff(period) > 0.0).all():
+        raise FitError(f"the knots {period.tolist()} of a closed curve must be distinct and increasing; sort them")
+    return np.pad(period, degree, "edge")
 
 
 def sites_along(points: Reals, *, closed: bool) -> Reals:
@@ -181,19 +218,14 @@ def fit_surface(
     parameters are those of the smallest rectangle around them in their principal plane, u along its longer side. For
     others give `start`, whose degrees, knots, control points and weights are then the first ones.
 
-    `weights` are one, (n_u, n_v) given ones, or `free` ones, whose logarithms have no mean (and no trend along a
-    direction without inner knots). `boundary` is `free`, or the `corners` are held at four of the points (at those of
-    `start`), or all outer control points are `fixed` at those of `start`. Where the points leave control points open,
-    the bending of the surface decides; `rank` says how many directions the points determine. With `tolerance` knots are
-    added along u or v, whichever gains more for a control point, until no inlier is further away; notes say where noise
-    stops it. The other arguments are those of `fit_curve`.
+    `boundary` is `free`, or the `corners` are held at four of the points (at those of `start`), or all outer control
+    points are `fixed` at those of `start`. With `tolerance` knots are added along u or v, whichever gains more for a
+    control point. `weights` are one, (n_u, n_v) given ones, or `free`; they and the others are those of `fit_curve`.
 
     Raises FitError where points are too few, not finite or on a line, or a choice is unknown. Source: as of
     `fit_curve`; the bending is that of a thin plate under tension (Franke 1985) in the surface's parameters.
     """
-    request = Request(
-        "a surface", points, 3, weights=weights, power=power, robust=robust, tolerance=tolerance, progress=progress
-    )
+    request = Request("a surface", points, power, tolerance, progress, dimension=3, weights=weights, robust=robust)
     if boundary not in ("free", "corners", "fixed"):
         raise FitError(f"boundary {boundary!r} is unknown: `free`, `corners`, or `fixed` at that of `start`")
     if boundary == "fixed" and start is None:
@@ -206,38 +238,23 @@ def fit_surface(
         )
     for degree, count in zip(degrees, control_points, strict=True):
         check_whole(degree=degree, control_points=count)
-    scaled = request.scaled(request.points)
+    scaled = request.points
     if start is None:
         shares = _rectangle(scaled)
-        net = first_net(scaled, shares, degrees, control_points, knots, weights)
+        with refusing():
+            own = (None, None) if knots is None else knots
+            u, v = (_knots(*each) for each in zip(own, control_points, degrees, strict=True))
+            none = np.zeros((len(u) - degrees[0] - 1, len(v) - degrees[1] - 1, 3))
+            flat = Surface(control_points=none, knots_u=u, knots_v=v, degree_u=degrees[0], degree_v=degrees[1])
+            net = laid(net_of(flat), scaled, shares, weights)
         if boundary == "corners":
             corners = [np.argmin(np.sum((shares - corner) ** 2, axis=1)) for corner in np.ndindex(2, 2)]
             net.points[~replace(net, boundary="corners").free] = scaled[corners]
     else:
         net = net_of(replace(start, control_points=request.scaled(start.control_points)))
-    low, high = net.domain
-    if boundary == "free":
-        # an edge that moves inwards past a point is a wall for the descent: hundreds of steps where a dozen are enough
-        try:
-            net = net_of(_over(net.shape, low - MARGIN * (high - low), high + MARGIN * (high - low)))
-        except GeometryError:
-            request.report("weights that fall towards an edge would not stay positive past it")
-    net = replace(net, boundary=boundary)
-    match, notes = matched_within(net, scaled, request, warm=start is not None)
-    surface, parameters = match.shape.shape, match.parameters
-    if boundary == "free":
-        first, last = np.min(parameters, axis=0), np.max(parameters, axis=0)
-        surface = _over(surface, first, last)
-        parameters = np.clip(low + (parameters - first) / (last - first) * (high - low), low, high)
+    surface, parameters, figures = _matched(replace(net, boundary=boundary), request, warm=start is not None)
     u, v = parameters.T
-    return SurfaceFit(surface=request.restored(surface), u=u, v=v, **match.figures(request, *notes))
-
-
-def _over(surface: Surface, first: Reals, last: Reals) -> Surface:
-    """The surface from its first to its last parameters (2,), where it is cut or continued; its domain stays."""
-    for k, (direction, domain) in enumerate(zip(DIRECTIONS, (surface.domain_u, surface.domain_v), strict=True)):
-        surface = reparametrised(extended(surface, float(first[k]), float(last[k]), direction), *domain, direction)
-    return surface
+    return SurfaceFit(surface=surface, u=u, v=v, **figures)
 
 
 def _rectangle(points: Reals) -> Reals:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass, replace
 from functools import cached_property
@@ -11,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bladewright.errors import FitError
-from bladewright.fitting.checks import check_positive, check_progress, is_number, reals
+from bladewright.fitting.checks import check_positive, check_progress, checked_points, is_number, reals
 from bladewright.nurbs.basis import Reals
 
 
@@ -86,32 +87,20 @@ class Request:
     """that is fitted, for messages"""
     given: ArrayLike
     """points, in their own unit"""
-    dimensions: int = 0
-    """of the points; 0 where any do"""
-    _: KW_ONLY
-    weights: object = "fixed"
-    power: float = 2.0
-    robust: bool = False
-    tolerance: float | None = None
+    power: float
+    tolerance: float | None
     """largest distance, in the unit of the points"""
-    progress: Callable[[str], None] | None = None
+    progress: Callable[[str], None] | None
     """is handed a few words on what is done"""
+    _: KW_ONLY
+    dimension: int | None = None
+    """of the points; None where any does"""
+    weights: object = "fixed"
+    robust: bool = False
 
     def __post_init__(self) -> None:
-        given, what = self.points, self.what
-        if given.ndim != 2 or given.shape[1] < 2 or self.dimensions not in (0, given.shape[1]):
-            raise FitError(
-                f"points of shape {given.shape} were given for {what}: give (n, d) with d = "
-                f"{self.dimensions or '2, 3 or more'} coordinates"
-            )
-        wrong = np.flatnonzero(~np.isfinite(given).all(axis=1))
-        if len(wrong):
-            raise FitError(
-                f"{len(wrong)} of {len(given)} points of {what} are not finite, the first in row {wrong[0]} "
-                f"({given[wrong[0]].tolist()}); leave these rows out"
-            )
-        if len(given) < 2 or not (np.ptp(given, axis=0) > 0.0).any():
-            raise FitError(f"{len(given)} points at one place were given for {what}: it needs different ones")
+        if len(self._own) < 2 or not self.extent > 0.0:
+            raise FitError(f"{len(self._own)} points at one place were given for {self.what}: it needs different ones")
         if isinstance(self.weights, str) and self.weights not in ("fixed", "free"):
             raise FitError(f"weights {self.weights!r} are unknown: `fixed` (all one), `free`, or positive numbers")
         if not is_number(self.power) or not 2.0 <= self.power <= 16.0:
@@ -124,9 +113,25 @@ class Request:
         check_progress(self.progress)
 
     @cached_property
+    def _own(self) -> Reals:
+        dimensions = range(2, sys.maxsize) if self.dimension is None else (self.dimension,)
+        needed = f"give (n, d) with d = {self.dimension or '2, 3 or more'} coordinates"
+        return checked_points(f"the points of {self.what}", self.given, dimensions, needed)
+
+    @cached_property
+    def centre(self) -> Reals:
+        """Mean (d,) of the points."""
+        return np.asarray(np.mean(self._own, axis=0))
+
+    @cached_property
+    def extent(self) -> float:
+        """Largest extent of the points along an axis."""
+        return float(np.ptp(self._own, axis=0).max(initial=0.0))
+
+    @cached_property
     def points(self) -> Reals:
-        """(n, d) as numbers."""
-        return reals(f"the points of {self.what}", self.given, "give an array of coordinates")
+        """(n, d) in extents about the centre."""
+        return self.scaled(self._own)
 
     @property
     def weights_free(self) -> bool:
@@ -137,16 +142,6 @@ class Request:
         """Tell what is done, where that was asked for."""
         if self.progress is not None:
             self.progress(words)
-
-    @cached_property
-    def centre(self) -> Reals:
-        """Mean (d,) of the points."""
-        return np.asarray(np.mean(self.points, axis=0))
-
-    @cached_property
-    def extent(self) -> float:
-        """Largest extent of the points along an axis."""
-        return float(np.ptp(self.points, axis=0).max())
 
     def scaled(self, points: Reals) -> Reals:
         """Points (..., d) in extents about the centre."""
@@ -162,7 +157,7 @@ class Request:
             if ends in ("fixed", "free"):
                 return None
             raise FitError(f"ends {ends!r} are unknown: `fixed`, `free`, or the first and the last point")
-        pair, count = reals("the ends", ends, "give the first and the last point"), self.points.shape[1]
+        pair, count = reals("the ends", ends, "give the first and the last point"), len(self.centre)
         if pair.shape != (2, count) or not np.isfinite(pair).all():
             raise FitError(f"ends of shape {pair.shape} were given: two finite points of {count} coordinates")
         return self.scaled(pair)

@@ -9,19 +9,26 @@ from itertools import pairwise
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.linalg import null_space
 
-from bladewright.errors import FitError, GeometryError
+from bladewright.errors import FitError
 from bladewright.fitting.checks import reals
 from bladewright.fitting.freeform.fits import Request
-from bladewright.fitting.freeform.search import STIFFNESSES, Shape, ShapeMatch, matched_by_stages, placed
+from bladewright.fitting.freeform.search import (
+    STIFFNESSES,
+    Shape,
+    ShapeMatch,
+    matched_by_stages,
+    matched_within,
+    placed,
+)
 from bladewright.numerics.quadrature import panels
-from bladewright.nurbs.basis import Reals, basis, breaks, checked_knots, uniform_knots
+from bladewright.nurbs.basis import Reals, basis, breaks
 from bladewright.nurbs.blossom import knot_change
 from bladewright.nurbs.closest import Descents, Places
 from bladewright.nurbs.collocation import collocation
-from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.curve import Curve, checked_weights
 from bladewright.nurbs.refine import Direction, direction_of, inserted
 from bladewright.nurbs.surface import Surface
 
@@ -29,10 +36,6 @@ TENSION = 0.01
 """weight of squared first derivatives, of that of squared second ones (design/freeform.md)"""
 LAST_STEP = 1e-10
 """last step of a descent, in the parameters of a patch: exact points are met to it (design/freeform.md)"""
-KNOT_ROUNDS = 25
-"""times that knots are added at most; it bounds the time (design/matching_constants.md)"""
-NOISE_RATIO = 1.25
-"""root mean square of a knot span's distances, of the noise, up to which they are noise (design/freeform.md)"""
 DIRECTIONS: tuple[Direction, Direction] = ("u", "v")
 """of a surface; a curve has the first"""
 
@@ -41,9 +44,8 @@ DIRECTIONS: tuple[Direction, Direction] = ("u", "v")
 class Net(Shape):
     """Control points and weights of a curve or surface, some of them unknown."""
 
-    knots: tuple[Reals, ...]
-    """clamped, one for each direction; the inner ones of a closed curve are distinct"""
-    degrees: tuple[int, ...]
+    pattern: Curve | Surface
+    """whose knots and degrees it has; the inner knots of a closed curve are distinct"""
     points: Reals
     """(N, d) control points, the last direction fastest; of a closed curve each once"""
     log_weights: Reals
@@ -53,25 +55,29 @@ class Net(Shape):
     boundary: Literal["free", "corners", "fixed"] = "free"
     """which of the outer control points do not move: none, the corners, or all"""
     closed: bool = False
-    ends: tuple[int, ...] = ()
-    """points whose places are held at the two ends of a curve; none where empty"""
+
+    @property
+    def axes(self) -> list[tuple[Reals, int]]:
+        """Knots and degree along each direction."""
+        return [direction_of(self.pattern, each) for each in DIRECTIONS[: self.pattern.control_points.ndim - 1]]
 
     @property
     def counts(self) -> tuple[int, ...]:
         """Numbers of control points along each direction."""
-        more = self.degrees[0] if self.closed else 0
-        return tuple(len(knots) - degree - 1 - more for knots, degree in zip(self.knots, self.degrees, strict=True))
+        if self.closed:
+            return (len(self.points),)
+        return self.pattern.control_points.shape[:-1]
 
     @cached_property
     def spread(self) -> Reals:
         """(m, N) matrix from the control points to those of the clamped shape, which a closed curve has more of."""
         if not self.closed:
             return np.eye(len(self.points))
-        period, degree, (count,) = breaks(self.knots[0]), self.degrees[0], self.counts
+        ((knots, degree),), (count,) = self.axes, self.counts
+        period = breaks(knots)
         turn, place = np.divmod(np.arange(-degree, count + degree + 1), count)
         around = period[place] + turn * (period[-1] - period[0])
-        change = knot_change(around, degree, self.knots[0])
-        return np.asarray(change @ np.eye(count)[np.arange(count + degree) % count])
+        return np.asarray(knot_change(around, degree, knots) @ np.eye(count)[np.arange(count + degree) % count])
 
     @cached_property
     def free(self) -> NDArray[np.bool_]:
@@ -92,7 +98,7 @@ class Net(Shape):
             return np.zeros((len(self.points), 0))
         trends = [
             along.ravel()
-            for along, knots in zip(np.indices(self.counts), self.knots, strict=True)
+            for along, (knots, _) in zip(np.indices(self.counts), self.axes, strict=True)
             if len(breaks(knots)) == 2 and not self.closed
         ]
         return np.asarray(null_space(np.array([np.ones(len(self.points)), *trends])))
@@ -103,7 +109,7 @@ class Net(Shape):
 
         Of squared second and some first derivatives: a thin plate under tension (Duchon 1977, Franke 1985).
         """
-        of = [_products(knots, degree) for knots, degree in zip(self.knots, self.degrees, strict=True)]
+        of = [_products(knots, degree) for knots, degree in self.axes]
         energy, *across = (bend + TENSION * slope for _, slope, bend in of)
         for other in across:
             (mass_u, slope_u, _), (mass_v, slope_v, _) = of
@@ -132,22 +138,14 @@ class Net(Shape):
         own = np.exp(self.log_weights)
         weights = self.spread @ own
         points = (self.spread @ (own[:, None] * self.points)) / weights[:, None]
-        given = weights.reshape(self.counts if len(self.knots) == 2 else -1) if self.log_weights.any() else None
-        if len(self.knots) == 1:
-            return Curve(control_points=points, knots=self.knots[0], degree=self.degrees[0], weights=given)
-        return Surface(
-            control_points=points.reshape(*self.counts, -1),
-            weights=given,
-            knots_u=self.knots[0],
-            knots_v=self.knots[1],
-            degree_u=self.degrees[0],
-            degree_v=self.degrees[1],
-        )
+        shape = self.pattern.control_points.shape
+        given = weights.reshape(shape[:-1]) if self.log_weights.any() else None
+        return replace(self.pattern, control_points=points.reshape(shape), weights=given)
 
     @property
     def domain(self) -> Reals:
         """(2, k) lowest and highest parameters."""
-        return np.array([[knots[0] for knots in self.knots], [knots[-1] for knots in self.knots]])
+        return np.array([knots[[0, -1]] for knots, _ in self.axes]).T
 
     def nearest(self, points: Reals, near: Reals | None = None) -> Reals:
         """Parameters (m, k) of the nearest places of points (m, d); a closed curve has no ends to be held at."""
@@ -157,14 +155,12 @@ class Net(Shape):
             return Places(shape=np.zeros(len(rows), dtype=np.intp), u=rows[:, 0], v=rows[:, -1])
 
         found = search.nearest(points, None if near is None else places(near), converged=LAST_STEP)
-        parameters = np.stack([found.u, found.v], axis=-1)[:, : len(self.knots)]
+        parameters = np.stack([found.u, found.v], axis=-1)[:, : len(self.axes)]
         if self.closed:
             low, high = self.domain
             seam = np.flatnonzero((found.u <= low) | (found.u >= high))
             past = search.nearest(points[seam], places(low + high - parameters[seam]), converged=LAST_STEP)
             parameters[seam, 0] = np.where(past.square < found.square[seam], past.u, found.u[seam])
-        if self.ends:
-            parameters[list(self.ends)] = self.domain
         return parameters
 
     def tangents(self, parameters: Reals) -> tuple[Reals, Reals, NDArray[np.bool_]]:
@@ -195,78 +191,46 @@ class Net(Shape):
         turned = np.einsum("mrd,mnd->mrn", directions, away).reshape(len(moved), -1)
         return np.concatenate([moved, turned @ self.gauge], axis=1)
 
-    def bending(self, stiffness: float) -> tuple[Reals, Reals]:
-        root = np.sqrt(stiffness) * self.bending_root
+    @property
+    def bending(self) -> tuple[Reals, Reals]:
+        root = self.bending_root
         slopes = np.kron(root[:, self.free], np.eye(self.points.shape[1]))
         return (root @ self.points).ravel(), np.pad(slopes, ((0, 0), (0, self.gauge.shape[1])))
 
     def refined(self, knots: Sequence[float], direction: Direction) -> Net:
         """The same shape with further knots."""
         net = net_of(inserted(self.shape, knots, direction), closed=self.closed)
-        return replace(net, boundary=self.boundary, weighted=self.weighted, ends=self.ends)
+        return replace(net, boundary=self.boundary, weighted=self.weighted)
 
 
 def net_of(shape: Curve | Surface, *, closed: bool = False) -> Net:
     """A curve or surface as a net; of a closed curve the nearest on its distinct knots."""
-    along = [direction_of(shape, each) for each in (DIRECTIONS[:1] if isinstance(shape, Curve) else DIRECTIONS)]
-    knots, degrees = tuple(own for own, _ in along), tuple(degree for _, degree in along)
-    if closed:
-        knots = (np.pad(breaks(knots[0]), degrees[0], "edge"),)
     points = shape.control_points.reshape(-1, shape.control_points.shape[-1])
     weights = np.ones(len(points)) if shape.weights is None else shape.weights.ravel()
-    net = Net(knots=knots, degrees=degrees, points=points, log_weights=np.log(weights), closed=closed)
+    net = Net(pattern=shape, points=points, log_weights=np.log(weights), closed=closed)
     if closed:
+        (knots, degree), given = net.axes[0], shape.weights is not None
+        own = np.pad(breaks(knots), degree, "edge")
+        pattern = Curve(control_points=np.zeros((len(own) - degree - 1, points.shape[1])), knots=own, degree=degree)
+        net = replace(net, pattern=pattern, points=pattern.control_points[degree:])
         both = np.linalg.lstsq(net.spread, np.column_stack([weights[:, None] * points, weights]), rcond=None)[0]
-        logs = np.zeros(len(both)) if shape.weights is None else np.log(both[:, -1])
+        logs = np.log(both[:, -1]) if given else np.zeros(len(both))
         net = replace(net, points=both[:, :-1] / both[:, -1:], log_weights=logs)
     return net
 
 
-def first_net(
-    points: Reals,
-    shares: Reals,
-    degrees: tuple[int, ...],
-    counts: tuple[int, ...],
-    knots: tuple[ArrayLike, ...] | None,
-    weights: str | ArrayLike,
-    *,
-    closed: bool = False,
-) -> Net:
-    """The net, a little stiff, nearest to points (m, d) at shares (m, k) of its domain.
+def laid(net: Net, points: Reals, shares: Reals, weights: object) -> Net:
+    """The net, a little stiff, nearest to points (m, d) at shares (m, k) of its domain; with weights, if any are given.
 
-    Its knots are uniform or given. Raises FitError where degrees, numbers of control points and knots make no curve or
-    surface, and where weights are not positive or not as many as control points.
+    Raises FitError and GeometryError where these are not one positive number for each control point.
     """
-    given_knots = [
-        np.atleast_1d(reals("knots", own, "give an increasing list")) for own in (() if knots is None else knots)
-    ]
-    if knots is not None:
-        ends = (1,) if closed else tuple(degree + 1 for degree in degrees)
-        counts = tuple(len(own) - end for own, end in zip(given_knots, ends, strict=True))
-    try:
-        own = [uniform_knots(count, degree) for count, degree in zip(counts, degrees, strict=True)]
-        every = own if knots is None or closed else given_knots
-        own = [checked_knots(*each, "knots") for each in zip(every, degrees, counts, strict=True)]
-    except GeometryError as error:
-        what = "curve" if len(degrees) == 1 else "surface"
-        raise FitError(f"a {what} of degree {degrees} with {counts} control points: {error}") from error
-    if closed:
-        period = np.linspace(0.0, 1.0, counts[0] + 1) if knots is None else given_knots[0]
-        if not (np.diff(period) > 0.0).all():
-            raise FitError(f"the knots {period.tolist()} of a closed curve must be distinct and increasing; sort them")
-        own = [np.pad(period, degrees[0], "edge")]
-    logs = np.zeros(counts)
     if not isinstance(weights, str):
         given = reals("weights", weights, "give a positive one for each control point")
-        if given.shape != counts or not (given > 0.0).all():
-            raise FitError(f"weights of shape {given.shape} were given: positive ones of shape {counts} are needed")
-        logs = np.log(given)
-    none = np.zeros((logs.size, points.shape[1]))
-    net = Net(knots=tuple(own), degrees=degrees, points=none, log_weights=logs.ravel(), closed=closed)
+        net = replace(net, log_weights=np.log(np.real(checked_weights(given, net.counts))).ravel())
     low, high = net.domain
     root = np.sqrt(STIFFNESSES[1] * len(points)) * net.bending_root
     rows = np.concatenate([net.basis(low + (high - low) * shares), root])
-    return replace(net, points=np.linalg.lstsq(rows, np.concatenate([points, none]), rcond=None)[0])
+    return replace(net, points=np.linalg.lstsq(rows, np.concatenate([points, 0.0 * net.points]), rcond=None)[0])
 
 
 def _products(knots: Reals, degree: int) -> list[Reals]:
@@ -276,9 +240,9 @@ def _products(knots: Reals, degree: int) -> list[Reals]:
     return [np.asarray(values.T @ (weight[:, None] * values)) for values in orders]
 
 
-def matched_within(net: Net, points: Reals, request: Request, *, warm: bool) -> tuple[ShapeMatch[Net], tuple[str, ...]]:
-    """The match within the largest distance that is asked for, and a note why it is not reached."""
-    dimensions = len(net.knots)
+def matched_net(net: Net, request: Request, *, warm: bool) -> tuple[ShapeMatch[Net], tuple[str, ...]]:
+    """The match of a net, with knots until its largest distance is what is asked for, and a note where it is not."""
+    points, dimensions = request.points, len(net.axes)
     unknowns = int(net.free.sum()) * (points.shape[1] if dimensions == 1 else 1)
     unknowns += len(net.points) - 1 if request.weights_free else 0
     rows = len(np.unique(points, axis=0)) * (points.shape[1] - dimensions)
@@ -288,43 +252,36 @@ def matched_within(net: Net, points: Reals, request: Request, *, warm: bool) -> 
             f"{' x '.join(map(str, net.counts))} control points: take fewer control points, fixed weights, or more "
             "points"
         )
-    match = matched_by_stages(placed(net, points), request, warm=warm)
-    limit = np.inf if request.tolerance is None else request.tolerance / request.extent
-    for _ in range(KNOT_ROUNDS):
-        if match.largest <= limit:
-            return match, ()
-        finer, reason = _finer(match, limit)
-        if finer is None:
-            reason = reason or f"noise of about {match.noise * request.extent:.3g} stops further knots"
-            break
+
+    def richer(match: ShapeMatch[Net], limit: float) -> ShapeMatch[Net] | str:
+        finer = _finer(match, limit)
+        if isinstance(finer, str):
+            return finer
         request.report(f"{len(finer.points)} control points")
-        match = matched_by_stages(replace(match, shape=finer, weights=np.ones(len(points))), request, warm=True)
-    else:
-        reason = f"{KNOT_ROUNDS} rounds of knots do not reach it"
-    far = match.largest * request.extent
-    return match, (f"the largest distance is {far:.3g} where {request.tolerance:.3g} was asked for: {reason}",)
+        return matched_by_stages(replace(match, shape=finer, weights=np.ones(len(points))), request, warm=True)
+
+    return matched_within(matched_by_stages(placed(net, points), request, warm=warm), request, richer)
 
 
-def _finer(match: ShapeMatch[Net], limit: float) -> tuple[Net | None, str]:
-    """The net with a knot in each span too far off, of a surface where it gains more, or None and why, if not noise."""
-    found: list[tuple[float, Net]] = []
-    reason = ""
-    square = match.distances**2
-    for direction, own, at in zip(DIRECTIONS, match.shape.knots, match.parameters.T, strict=False):
-        knots = []
-        for low, high in pairwise(breaks(own)):
-            rows = match.inliers & (at >= low) & (at <= high)
-            above = square[rows].sum() > rows.sum() * match.codimension * (NOISE_RATIO * match.noise) ** 2
-            if above and square[rows].max() > limit**2:
-                knots.append(0.5 * (low + high))
-        if not knots:
-            continue
-        finer = match.shape.refined(knots, direction)
-        if 2 * len(finer.points) > len(at):
-            reason = "the points are too few for further knots"
-            continue
+def _finer(match: ShapeMatch[Net], limit: float) -> Net | str:
+    """The net with a knot in each span too far off, along the direction where it gains more; or why there is none."""
+    found = []
+    for direction, (own, _), at in zip(DIRECTIONS, match.shape.axes, match.parameters.T, strict=False):
+        spans = [(low, high, match.inliers & (at >= low) & (at <= high)) for low, high in pairwise(breaks(own))]
+        knots = [
+            0.5 * (low + high)
+            for low, high, rows in spans
+            if match.distances[rows].max(initial=0.0) > limit and not match.is_noise(rows)
+        ]
+        if knots:
+            found.append(match.shape.refined(knots, direction))
+    if not found:
+        return "the rest is the noise of the points"
+    few = [net for net in found if 2 * len(net.points) <= len(match.points)]
+
+    def gain(finer: Net) -> float:
         trial = replace(match, shape=finer)
         step = np.linalg.lstsq(trial.jacobian, trial.residuals, rcond=1e-6)[0]
-        gain = float(np.sum((trial.jacobian @ step) ** 2))
-        found.append((gain / (len(finer.points) - len(match.shape.points)), finer))
-    return max(found, key=lambda each: each[0])[1] if found else None, reason
+        return float(np.sum((trial.jacobian @ step) ** 2)) / (len(finer.points) - len(match.shape.points))
+
+    return max(few, key=gain) if few else "the points are too few for further knots"

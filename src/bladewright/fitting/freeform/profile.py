@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Literal, final
 
 import numpy as np
@@ -17,11 +16,11 @@ from bladewright.errors import FitError
 from bladewright.fitting.checks import check_whole
 from bladewright.fitting.freeform.fits import FreeformFit, Request
 from bladewright.fitting.freeform.net import LAST_STEP, Net, net_of
-from bladewright.fitting.freeform.search import Shape, matched_by_stages, placed
-from bladewright.fitting.initial_guess.slices import PLACES, PlanePoints, longest_chord, slices_of
+from bladewright.fitting.freeform.search import Shape, ShapeMatch, matched_by_stages, matched_within, placed
+from bladewright.fitting.initial_guess.slices import PlanePoints, longest_chord, slices_of
 from bladewright.numerics.elementary import Array, length, turned_left
 from bladewright.numerics.single_thread import single_threaded
-from bladewright.nurbs.basis import Reals, basis, uniform_knots
+from bladewright.nurbs.basis import Reals, uniform_knots
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.descent import descended
 from bladewright.nurbs.refine import inserted
@@ -32,10 +31,6 @@ THIRD_ABSCISSA = 0.0625
 """abscissa of the third control point of the thickness, of the chord (the source's section 4.2)"""
 SITES = np.linspace(0.0, 1.0, 201)
 """parameters of a side where searches for nearest places start, and of the camber between which abscissae are sought"""
-NOISE_MAXIMUM = 3.0
-"""standard deviations of the noise that the largest of some hundred distances has by chance (design/freeform.md)"""
-MOST_GROWTHS = 8
-"""times that control points are added at most; it bounds the time (design/matching_constants.md)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -92,39 +87,28 @@ class CamberThickness(Shape):
 
     def slopes(self, parameters: Reals, directions: Reals) -> Reals:
         u, at = parameters[:, 0], self.unknowns
-        near = self._sites(u)
-        columns = [self.changed(at + 1j * STEP * each)(u, near).imag / STEP for each in np.eye(len(at))]
+        columns = [self.changed(at + 1j * STEP * each)(u).imag / STEP for each in np.eye(len(at))]
         return np.einsum("nmd,mrd->mrn", columns, directions).reshape(-1, len(at))
 
-    def bending(self, stiffness: float) -> tuple[Reals, Reals]:
+    @property
+    def bending(self) -> tuple[Reals, Reals]:
         """As of a shape; the logarithms of the weights count too."""
-        camber, of, cost = self.camber, self.thickness, np.sqrt(stiffness)
-        bent, slopes = camber.bending(stiffness)
-        heights, logs = cost * of.bending_root @ of.points[:, 1], cost * of.gauge.T @ of.log_weights
-        more = cost * of.bending_root[:, self.heights], cost * np.eye(len(logs))
-        return np.concatenate([bent, heights, logs]), block_diag(slopes, *more)
+        of, (bent, slopes) = self.thickness, self.camber.bending
+        heights, logs = of.bending_root @ of.points[:, 1], of.gauge.T @ of.log_weights
+        return np.concatenate([bent, heights, logs]), block_diag(
+            slopes, of.bending_root[:, self.heights], np.eye(len(logs))
+        )
 
-    @cached_property
-    def _abscissae(self) -> Reals:
-        return np.maximum.accumulate(np.real(self.camber.shape(SITES)[:, 0]))
-
-    def _sites(self, u: Array) -> Reals:
-        """Camber parameters (n,) at parameters u (n,) of the thickness, where the abscissae are the same."""
-        abscissae = np.real(self.thickness.shape(np.abs(np.real(u)))[:, 0])
-        found = np.interp(abscissae, self._abscissae, SITES)
-        # from 1e-5, squared twice, and once more in each evaluation
-        for _ in range(2):
-            place, slope = (np.real(each[:, 0]) for each in self.camber.shape.derivatives(found, 1))
-            found = np.clip(found - (place - abscissae) / np.maximum(slope, 1e-9), 0.0, 1.0)
-        return found
-
-    def __call__(self, u: Array, near: Reals | None = None) -> Array:
-        """Points (n, 2) at parameters u (n,), which may be complex; camber parameters `near` (n,) are then at hand."""
+    def __call__(self, u: Array) -> Array:
+        """Points (n, 2) at parameters u (n,), which may be complex."""
         sign = np.where(np.real(u) < 0.0, -1.0, 1.0)
         x, h = self.thickness.shape(sign * u).T
-        near = self._sites(u) if near is None else near
-        first, slope = self.camber.shape.derivatives(near, 1)
-        place, tangent = self.camber.shape.derivatives(near + (x - first[:, 0]) / slope[:, 0], 1)
+        near: Array = np.interp(np.real(x), np.maximum.accumulate(np.real(self.camber.shape(SITES)[:, 0])), SITES)
+        # to where the camber's abscissa is the same, from 1e-5: squared twice
+        for _ in range(2):
+            place, tangent = self.camber.shape.derivatives(near, 1)
+            near = near + (x - place[:, 0]) / tangent[:, 0]
+        place, tangent = self.camber.shape.derivatives(near, 1)
         return np.asarray(place + (sign * h / length(tangent))[:, None] * turned_left(tangent))
 
 
@@ -185,13 +169,13 @@ def fit_profile(
     Source: the freeform NURBS blading paper, sections 3.1 and 4.2 (its objective with power 4); the thickness is laid
     off along the camber's normals.
     """
-    request = Request("a profile", points, 2, power=power, tolerance=tolerance, progress=progress)
+    request = Request("a profile", points, power, tolerance, progress, dimension=2)
     check_whole(camber=camber, thickness=thickness)
-    pair, scaled = request.ends(ends), request.scaled(request.points)
+    pair, scaled = request.ends(ends), request.points
     if trailing_edge not in ("blunt", "round"):
         raise FitError(f"trailing edge {trailing_edge!r} is unknown: `blunt` or `round`")
 
-    def fitted(camber: int, thickness: int) -> ProfileFit:
+    def fitted(camber: int, thickness: int) -> ShapeMatch[CamberThickness]:
         start = _start(scaled, camber, thickness, round_end=trailing_edge == "round")
         if pair is not None:
             moved = start.unknowns
@@ -205,30 +189,29 @@ def fit_profile(
             # last, because a blunt edge that stands out of its points costs nothing (design/freeform.md)
             loose = replace(match.shape, camber=replace(match.shape.camber, boundary="free"))
             match = matched_by_stages(replace(match, shape=loose), request, warm=True)
-        of, u = match.shape, match.parameters[:, 0]
-        heights = of.thickness.points * request.extent + np.array([request.centre[0], 0.0])
-        return ProfileFit(
-            camber=request.restored(of.camber.shape),
-            thickness=replace(of.thickness.shape, control_points=heights),
-            upper=u >= 0.0,
-            t=np.abs(u),
-            **match.figures(request),
-        )
+        return match
 
-    found = fitted(camber, thickness)
-    evaluations, growth, reason = found.iterations, 0, ""
-    while tolerance is not None and found.maximum > tolerance and not reason:
-        growth += 1
-        if found.maximum <= NOISE_MAXIMUM * found.noise:
-            reason = "what is left is the noise of the points: more control points would follow it"
-        elif growth > MOST_GROWTHS or len(scaled) < 2 * (camber + thickness + 2 * growth):
-            reason = f"{len(scaled)} points and {MOST_GROWTHS} rounds of control points do not reach the tolerance"
-        else:
-            richer = fitted(camber + growth, thickness + growth)
-            evaluations += richer.iterations
-            nearer = richer.maximum < found.maximum
-            found, reason = (richer, "") if nearer else (found, "further control points bring the profile no nearer")
-    return replace(found, iterations=evaluations, notes=(*found.notes, reason) if reason else found.notes)
+    def richer(match: ShapeMatch[CamberThickness], _: float) -> ShapeMatch[CamberThickness] | str:
+        counts = len(match.shape.camber.points) + 1, len(match.shape.thickness.points) + 1
+        if match.is_noise(match.inliers):
+            return "the rest is the noise of the points"
+        if len(scaled) < 2 * sum(counts):
+            return "the points are too few for further control points"
+        found = fitted(*counts)
+        if found.largest >= match.largest:
+            return "further control points bring the profile no nearer"
+        return replace(found, evaluations=match.evaluations + found.evaluations)
+
+    match, notes = matched_within(fitted(camber, thickness), request, richer)
+    of, u = match.shape, match.parameters[:, 0]
+    heights = of.thickness.points * request.extent + np.array([request.centre[0], 0.0])
+    return ProfileFit(
+        camber=request.restored(of.camber.shape),
+        thickness=replace(of.thickness.shape, control_points=heights),
+        upper=u >= 0.0,
+        t=np.abs(u),
+        **match.figures(request, *notes),
+    )
 
 
 def _start(points: Reals, camber: int, thickness: int, *, round_end: bool) -> CamberThickness:
@@ -254,10 +237,7 @@ def _start(points: Reals, camber: int, thickness: int, *, round_end: bool) -> Ca
     line = inserted(Curve(control_points=found.camber[0], knots=uniform_knots(4, DEGREE), degree=DEGREE), knots[4:-4])
     low, high = found.camber[0, [0, 3], 0]
     knots, abscissae = uniform_knots(thickness, DEGREE), abscissae_of(thickness, low, high, round_end=round_end)
-    rows = basis(knots, DEGREE, SITES)
-    half = np.interp((rows @ abscissae - low) / (high - low), PLACES, found.half[0])
-    heights = np.zeros(thickness)
-    inner = slice(1, -1) if round_end else slice(1, None)
-    heights[inner] = np.linalg.lstsq(rows[:, inner], half, rcond=None)[0]
+    heights = np.full(thickness, np.mean(found.half))
+    heights[[0, -1] if round_end else [0]] = 0.0
     half_thickness = net_of(Curve(control_points=np.stack([abscissae, heights], -1), knots=knots, degree=DEGREE))
     return CamberThickness(camber=net_of(line), thickness=half_thickness.freed, round_end=round_end)

@@ -8,6 +8,7 @@ along its tangents (tangent distance minimisation: Wang, Pottmann and Liu 2006).
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Generic, Self, TypeVar
@@ -23,12 +24,16 @@ from bladewright.nurbs.basis import Reals
 
 STIFFNESSES = (1e-4, 1e-6, 1e-8, 1e-10)
 """weights of the bending, in extents of the points squared, in turn (design/freeform.md)"""
-LAST, ROUGH = (200, 1e-5), (20, 1e-3)
-"""evaluations and predicted gain with which a descent ends: the last one, and others (design/freeform.md)"""
+STEPS, MIN_REDUCTION = 200, 1e-5
+"""evaluations and predicted gain with which a descent ends (design/freeform.md)"""
 OUTLYING_NOISE = 4.5
 """standard deviations of the noise from which a point is an outlier: 1 good one of 150,000 is (design/freeform.md)"""
 REWEIGHTINGS = 5
 """times that the weights of least distances are found anew (design/freeform.md)"""
+NOISE_RATIO = 1.25
+"""root mean square of distances, of the noise, up to which they are noise (design/freeform.md)"""
+ROUNDS = 12
+"""times that a shape gets more control points at most; it bounds the time (design/matching_constants.md)"""
 EXACT = 1e-10
 """distance, of the extent, that is rounding of the places (design/freeform.md)"""
 DETERMINED = 1e-6
@@ -64,9 +69,10 @@ class Shape(ABC):
     def slopes(self, parameters: Reals, directions: Reals) -> Reals:
         """Derivatives (m r, n) by the unknowns of places at held parameters (m, k), along directions (m, r, d)."""
 
+    @property
     @abstractmethod
-    def bending(self, stiffness: float) -> tuple[Reals, Reals]:
-        """Residuals (b,) whose squares are the bending, times its weight, and their derivatives (b, n)."""
+    def bending(self) -> tuple[Reals, Reals]:
+        """Residuals (b,) whose squares are the bending, and their derivatives (b, n)."""
 
 
 S = TypeVar("S", bound=Shape)
@@ -172,6 +178,11 @@ class ShapeMatch(Generic[S]):
         """Number of directions across the shape."""
         return self.points.shape[1] - self.parameters.shape[1]
 
+    def is_noise(self, rows: NDArray[np.bool_]) -> bool:
+        """Whether the distances of some inliers are those of the noise."""
+        square = self.distances[rows & self.inliers] ** 2
+        return bool(square.sum() <= len(square) * self.codimension * (NOISE_RATIO * self.noise) ** 2)
+
     def figures(self, request: Request, *notes: str) -> dict[str, Any]:
         """The figures of a fit, in the unit of the points that were given."""
         rank, unknowns = self.rank, len(self.singular_values)
@@ -192,13 +203,12 @@ class ShapeMatch(Generic[S]):
 
 
 class Problem(ConstrainedProblem, Generic[S]):
-    """The residuals of a shape's distances and bending; places follow from those of the unknowns accepted last."""
+    """The residuals of a shape's distances and bending; places follow the shape by descent."""
 
     def __init__(self, match: ShapeMatch[S], stiffness: float) -> None:
-        self.accepted = self.tried = match
-        self.stiffness = stiffness * float(match.weights.sum())
-        self.evaluations = 0
+        self.match, self.evaluations = match, 0
         self.z = self.start = match.shape.unknowns
+        self.root = np.sqrt(stiffness * match.weights.sum())
 
     @property
     def bounds(self) -> tuple[Reals, Reals]:
@@ -208,17 +218,17 @@ class Problem(ConstrainedProblem, Generic[S]):
     def at(self, z: Reals) -> ShapeMatch[S]:
         """The shape at unknowns (n,), with its nearest places."""
         if not np.array_equal(z, self.z):
-            self.z, self.tried = z.copy(), self.accepted.on(self.accepted.shape.changed(z), follow=True)
-        return self.tried
+            self.z, self.match = z.copy(), self.match.on(self.match.shape.changed(z), follow=True)
+        return self.match
 
     def values(self, z: Reals) -> tuple[Reals, Reals]:
         self.evaluations += 1
         found = self.at(z)
-        return np.concatenate([found.residuals, found.shape.bending(self.stiffness)[0]]), np.zeros(0)
+        return np.concatenate([found.residuals, self.root * found.shape.bending[0]]), np.zeros(0)
 
     def derivatives(self, z: Reals) -> tuple[Reals, Reals]:
-        found = self.accepted = self.at(z)
-        return np.concatenate([found.jacobian, found.shape.bending(self.stiffness)[1]]), np.zeros((0, len(z)))
+        found = self.at(z)
+        return np.concatenate([found.jacobian, self.root * found.shape.bending[1]]), np.zeros((0, len(z)))
 
 
 def placed(shape: S, points: Reals) -> ShapeMatch[S]:
@@ -226,12 +236,12 @@ def placed(shape: S, points: Reals) -> ShapeMatch[S]:
     return ShapeMatch(shape=shape, points=points, weights=np.ones(len(points)), parameters=shape.nearest(points))
 
 
-def matched(match: ShapeMatch[S], stiffness: float, end: tuple[int, float] = LAST) -> ShapeMatch[S]:
+def matched(match: ShapeMatch[S], stiffness: float) -> ShapeMatch[S]:
     """The shape at which the cost of the distances, and `stiffness` times its bending, are least."""
     if len(match.shape.unknowns) == 0:
         return replace(match, converged=True)
-    problem, (steps, reduction) = Problem(match, stiffness), end
-    found = constrained_minimum(problem, problem.start, steps=steps, min_reduction=reduction, accelerated=False)
+    problem = Problem(match, stiffness)
+    found = constrained_minimum(problem, problem.start, steps=STEPS, min_reduction=MIN_REDUCTION, accelerated=False)
     last = problem.at(found.z)
     # places follow the shape by descent while it moves, and are sought everywhere at the end (design/freeform.md)
     everywhere = last.on(last.shape)
@@ -252,7 +262,7 @@ def matched_by_stages(match: ShapeMatch[S], request: Request, *, warm: bool = Fa
         match = _without_outliers(match, (*stiffnesses[:2], *[STIFFNESSES[2]] * REWEIGHTINGS))
     for stiffness in stiffnesses:
         request.report(f"{len(match.shape.unknowns)} unknowns, stiffness {stiffness:g}")
-        match = matched(match, stiffness, ROUGH)
+        match = matched(match, stiffness)
     match = matched(match, match.softest)
     if request.weights_free:
         request.report("free weights")
@@ -273,6 +283,27 @@ def _without_outliers(match: ShapeMatch[S], stiffnesses: tuple[float, ...]) -> S
     """
     for stiffness in stiffnesses:
         spread = max(median_deviation(match.distances), EXACT)
-        match = matched(replace(match, weights=spread / np.maximum(match.distances, spread)), stiffness, ROUGH)
+        match = matched(replace(match, weights=spread / np.maximum(match.distances, spread)), stiffness)
     inliers = match.distances <= max(OUTLYING_NOISE * median_deviation(match.distances), EXACT)
     return replace(match, weights=inliers.astype(np.float64))
+
+
+def matched_within(
+    match: ShapeMatch[S], request: Request, richer: Callable[[ShapeMatch[S], float], ShapeMatch[S] | str]
+) -> tuple[ShapeMatch[S], tuple[str, ...]]:
+    """The match within the largest distance that is asked for, and a note why it is not reached.
+
+    `richer` gives the match of a shape with more control points, or says why there is none; it is handed the distance.
+    """
+    limit = np.inf if request.tolerance is None else request.tolerance / request.extent
+    reason = f"{ROUNDS} rounds of control points do not reach it"
+    for _ in range(ROUNDS):
+        found = richer(match, limit) if match.largest > limit else match
+        if isinstance(found, str):
+            reason = found
+            break
+        match = found
+    if match.largest <= limit:
+        return match, ()
+    far = match.largest * request.extent
+    return match, (f"the largest distance is {far:.3g} where {request.tolerance:.3g} was asked for: {reason}",)
