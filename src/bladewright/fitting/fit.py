@@ -296,11 +296,6 @@ class _Outcome:
     failures: tuple[str, ...]
     measurement: Measurement
 
-    @property
-    def largest(self) -> float:
-        """Largest distance of an inlier [m]."""
-        return float(np.max(self.measurement.distances[self.measurement.inliers]))
-
 
 def _outcome(
     here: PlacedTask, match: Match, plain: Any, finishing: RowDesign | None, hint: Footpoints | None = None
@@ -346,7 +341,7 @@ def _with_points_left_out(outcome: _Outcome, target: MatchTarget) -> _Outcome:
     if found is match:
         return outcome
     again = _outcome(here, found, found.design.build(), outcome.finishing, measurement.footpoints)
-    return min(outcome, again, key=lambda each: each.largest)
+    return min(outcome, again, key=lambda each: each.measurement.maximum)
 
 
 def _reported(outcome: _Outcome, target: MatchTarget, notes: tuple[str, ...]) -> Fit:

@@ -110,15 +110,6 @@ class Acceptance:
     def _loose_ends(self) -> dict[str, float]:
         return coverage.loose_ends(self.match, self.measurement.footpoints.part(self.measurement.inliers))
 
-    @cached_property
-    def _worst(self) -> int:
-        """The inlier that is farthest off."""
-        return int(np.argmax(np.where(self.measurement.inliers, self.measurement.distances, -1.0)))
-
-    @property
-    def _largest(self) -> float:
-        return float(self.measurement.distances[self._worst])
-
     @property
     def _one_point(self) -> float:
         """How well one point shows the shape [m] (95 %)."""
@@ -130,12 +121,12 @@ class Acceptance:
     def _outliers(self) -> Iterator[Finding]:
         """Outliers that are too many, too many beside each other, or where chance does not put them."""
         measurement, chord = self.measurement, self.match.model.chord
-        distances, count = measurement.distances, len(measurement.distances)
-        outliers = measurement.outliers
-        off = int(np.count_nonzero(outliers))
+        distances, count, off = measurement.distances, len(measurement.distances), len(measurement.outliers)
         if off > LARGEST_OUTLIER_SHARE * count:
             yield Finding(f"{off} of {count} points lie off the blade: is it one blade, and of this family?")
         # points that are met as nearly as is asked are no part that is not found
+        outliers = np.zeros(count, dtype=bool)
+        outliers[measurement.outliers] = True
         outliers &= distances > (self.target.tolerance or NEAR_EVERYWHERE * chord)
         together = _largest_group(measurement.footpoints, outliers)
         if len(together) > LARGEST_GROUP * count:
@@ -163,7 +154,7 @@ class Acceptance:
     def _deviations(self) -> Iterator[Finding]:
         """How far off the match is, against what was asked for, or without a tolerance what is trusted."""
         measurement, chord, tolerance = self.measurement, self.match.model.chord, self.target.tolerance
-        mean, largest = float(np.mean(measurement.distances[measurement.inliers])), self._largest
+        mean, largest, worst = measurement.mean, measurement.maximum, measurement.worst
         if self.match.interrupted:
             yield Finding("the search was interrupted: this is the best design so far")
         if self._in_space and mean > GROSS_DEVIATION[0] * chord:
@@ -171,8 +162,8 @@ class Acceptance:
         if tolerance is not None:
             if largest > tolerance:
                 yield Finding(
-                    f"the largest deviation is {self._length(largest, 4)} ({measurement.regions[self._worst]}, point "
-                    f"{self._worst}), and {self._length(tolerance, 4)} were asked for"
+                    f"the largest deviation is {self._length(largest, 4)} ({measurement.regions[worst]}, point "
+                    f"{worst}), and {self._length(tolerance, 4)} were asked for"
                 )
             return
         for word, value, limit in zip(("mean", "largest"), (mean, largest), GROSS_DEVIATION, strict=True):
@@ -192,9 +183,9 @@ class Acceptance:
     @property
     def _not_found(self) -> str:
         rms, noise = self.match.rms * self.match.model.chord, self.match.noise_estimate.noise
-        feet, hint = self.measurement.footpoints, ""
-        if self.match.model.rounded and feet.from_edges[self._worst] < BETWEEN_EDGES:
-            name = min(EDGE_PARAMETERS, key=lambda edge: abs(feet.u[self._worst] - EDGE_PARAMETERS[edge]))
+        u, hint = self.measurement.u[self.measurement.worst], ""
+        name, away = min(((name, abs(u - end)) for name, end in EDGE_PARAMETERS.items()), key=lambda each: each[1])
+        if self.match.model.rounded and away < BETWEEN_EDGES:
             hint = f"; it is farthest off beside the {name}, and the edges of this family are round"
         return (
             f"the shape is not found: deviations go on from point to point, {self._length(rms, 3)} rms where the "
@@ -266,7 +257,7 @@ class Acceptance:
             return
         allowed = max(GROSS_DEVIATION[0] * chord, self._one_point)
         # where the sides are met everywhere it is a note
-        fails = known and self._largest > NEAR_EVERYWHERE * chord and max(ends.values()) > allowed
+        fails = known and self.measurement.maximum > NEAR_EVERYWHERE * chord and max(ends.values()) > allowed
         gaps = ", ".join(f"{self._length(gap)} at the {name}" for name, gap in ends.items())
         cure = (
             f", and {100 * allowed / chord:.2g} % of the chord are allowed: give points there, hold hub and shroud, or "
@@ -277,7 +268,7 @@ class Acceptance:
     def _parameters(self) -> Iterator[Finding]:
         """Parameters that the points do not determine, and those on a bound."""
         estimates, rank = self.statistics.estimates, self.statistics.rank
-        unknown = [each.path for each in estimates if not each.identified]
+        unknown = self.statistics.unidentified
         # those of ends that no row of points shows are a note
         of_ends = [path for path in unknown if self._loose_ends and path.startswith(("channel.", "flow_path."))]
         if self._nothing_asked and rank < len(estimates) - len(of_ends):
@@ -285,8 +276,8 @@ class Acceptance:
                 f"the points determine {rank} of the {len(estimates)} parameters: give more points, a number of "
                 "parameters, or a tolerance"
             )
-        on_bounds = [each.path for each in estimates if each.at_bound]
-        for words, names in (("the cloud does not determine", unknown), ("on a bound:", on_bounds)):
+        listed = ("the cloud does not determine", unknown), ("on a bound:", self.statistics.at_bounds)
+        for words, names in listed:
             if names:
                 more = f" and {len(names) - LISTED_NAMES} more" if len(names) > LISTED_NAMES else ""
                 yield Finding(f"{words} {', '.join(names[:LISTED_NAMES])}{more}", fails=False)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +32,33 @@ LAST_STEP = 1e-10
 """last step of descents, in a patch's parameters: a chord of 36 mm is met to 1e-11 m, and with 1e-8 to 2e-10 m"""
 OFF_SIDES = 3.0
 """standard deviations from which a point is off the sides, maybe on another face: three sigma (Pukelsheim 1994)"""
+
+FIGURES = ("mean", "rms", "percentile_99", "maximum")
+"""figures of a deviation that are reported"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Deviation:
+    """Distances of some points of a cloud from the surface [m]."""
+
+    count: int
+    mean: float
+    rms: float
+    percentile_99: float
+    maximum: float
+
+
+def deviation_of(distances: Reals) -> Deviation:
+    """The figures of distances (n,) [m]; no numbers where there are none."""
+    if len(distances) == 0:
+        return Deviation(count=0, **dict.fromkeys(FIGURES, math.nan))
+    return Deviation(
+        count=len(distances),
+        mean=float(np.mean(distances)),
+        rms=float(np.sqrt(np.mean(distances**2))),
+        percentile_99=float(np.percentile(distances, 99.0)),
+        maximum=float(np.max(distances)),
+    )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -58,17 +87,37 @@ class PlacesOfPoints:
         """(n,) true distances from the surface [m]."""
         return np.sqrt(self.deviations**2)
 
+    @property
+    def outliers(self) -> NDArray[np.intp]:
+        """Indices of the points that are outliers."""
+        return np.flatnonzero(~self.inliers & (self.set_aside == ""))
+
+    @property
+    def worst(self) -> int:
+        """Index of the inlier that is farthest off."""
+        return int(np.argmax(np.where(self.inliers, self.distances, -np.inf)))
+
+    @cached_property
+    def deviation(self) -> Deviation:
+        """Of all inliers."""
+        return deviation_of(self.distances[self.inliers])
+
+    @property
+    def mean(self) -> float:
+        """Mean distance of the inliers [m]."""
+        return self.deviation.mean
+
+    @property
+    def maximum(self) -> float:
+        """Largest distance of an inlier [m]."""
+        return self.deviation.maximum
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Measurement(PlacesOfPoints):
     """Where the n points of a cloud lie on what was built, with the footpoints before cuts and fillets."""
 
     footpoints: Footpoints
-
-    @property
-    def outliers(self) -> NDArray[np.bool_]:
-        """(n,) whether a point is an outlier."""
-        return np.asarray(~self.inliers & (self.set_aside == ""))
 
 
 def measured(
@@ -206,6 +255,16 @@ class ParameterEstimates:
     """number of directions in the space of the parameters that the cloud determines"""
     condition: float
     """ratio of the largest to the smallest singular value of the scaled problem"""
+
+    @property
+    def unidentified(self) -> tuple[str, ...]:
+        """Parameters that the cloud does not determine."""
+        return tuple(each.path for each in self.estimates if not each.identified)
+
+    @property
+    def at_bounds(self) -> tuple[str, ...]:
+        """Parameters that lie on one of their bounds."""
+        return tuple(each.path for each in self.estimates if each.at_bound)
 
 
 def parameter_estimates(match: Match) -> ParameterEstimates:
