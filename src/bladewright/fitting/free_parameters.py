@@ -208,9 +208,6 @@ ON_BOUND = 1e-9
 INSIDE = 1e-3
 """how far inside its field's limits a parameter stays, of its size, for derivatives (design/matching_constants.md)"""
 
-OPEN = -np.inf, np.inf
-"""bounds that hold nothing"""
-
 RANGES: tuple[tuple[str, Callable[[float, float], ParameterRange]], ...] = (
     ("metal_angle_.*", lambda *_: ParameterRange(10.0, -LARGEST_ANGLE, LARGEST_ANGLE)),
     ("leading_edge_theta|stacking.theta", lambda *_: ParameterRange(float(np.degrees(0.05)))),
@@ -304,7 +301,7 @@ def given_bounds(given: Any) -> dict[str, tuple[float, float]]:
                 f"the bounds of {pattern} are {pair!r}: the lowest and the highest value are needed, such as (5, 9), "
                 "or None for one that is open"
             )
-        least, most = (open_end if each is None else float(each) for each, open_end in zip(ends, OPEN, strict=True))
+        least, most = (-np.inf if ends[0] is None else float(ends[0])), (np.inf if ends[1] is None else float(ends[1]))
         if not least < most:
             raise FitError(f"the bounds of {pattern} are {least:g} to {most:g}: the first must be below the second")
         bounds[pattern] = least, most

@@ -32,9 +32,7 @@ FREE_GAP = 0.1
 AT_EDGE = 0.01
 """share of such a gap within which an edge is at its end (design/matching_constants.md)"""
 WAY_SAMPLES = 401
-"""places along a side between which its length is taken as straight (design/matching_constants.md)"""
-THICKNESS_SAMPLES = 25
-"""places along a section among which it is thickest (design/matching_constants.md)"""
+"""places along a side between which it is taken as straight, and where it is thickest (design/matching_constants.md)"""
 PLACES = {2: (41, 1), 3: (21, 21)}
 """places along each side and the span, by dimension, where it is asked how well the shape is known: they bound time,
 and but for the ends and the middle lie between even rows of points"""
@@ -107,7 +105,7 @@ def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:
         # a point on the arc is nearer to its middle than the other side is, which no point before it is
         if np.mean(np.sqrt(np.sum((near_end - tip) ** 2, axis=-1)) <= width) < COVERED_SHARE:
             wide = float(np.median(width))
-            u = np.linspace(0.0, 1.0, THICKNESS_SAMPLES)
+            u = np.linspace(0.0, 1.0, WAY_SAMPLES)
             uncovered[name] = wide, wide / shape.thickness(u, float(np.median(v)))
     return uncovered
 
@@ -185,5 +183,5 @@ def least_thickness(match: Match) -> float:
     """The least over the span of the sections' largest thickness [m]; infinite for families with other edges."""
     if not match.model.rounded:
         return np.inf
-    u = np.linspace(0.0, 1.0, THICKNESS_SAMPLES)
+    u = np.linspace(0.0, 1.0, WAY_SAMPLES)
     return min(match.state.shape.thickness(u, v) for v in (0.1, 0.3, 0.5, 0.7, 0.9))

@@ -215,8 +215,6 @@ IDENTIFIED_SPREAD = 0.3
 """deviation of a determined parameter, of its scale: the 95 % interval is about one (design/matching_constants.md)"""
 LARGEST_CONDITION = 1e7
 """condition of the scaled derivatives from which a parameter is not determined (design/matching_constants.md)"""
-AT_BOUND = 1e-3
-"""distance from a bound, of a parameter's scale, within which it lies on the bound (design/matching_constants.md)"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -284,9 +282,8 @@ def parameter_estimates(match: Match) -> ParameterEstimates:
     covariance[np.ix_(inside, inside)] = variance * turns[known].T @ middle @ turns[known]
     spread = np.sqrt(np.diag(covariance))
     spread[np.flatnonzero(inside)[np.any(np.abs(turns[~known]) > np.sqrt(np.finfo(float).eps), axis=0)]] = np.inf
-    deviations, near = spread * scales.size, AT_BOUND * scales.size
+    deviations = spread * scales.size
     reach = float(stdtrit(left, 0.975)) * deviations
-    at_bound = (values - scales.low < np.minimum(near, 0.1 * np.abs(values))) | (scales.high - values < near)
     estimates = tuple(
         Estimate(
             path=path,
@@ -295,7 +292,7 @@ def parameter_estimates(match: Match) -> ParameterEstimates:
             low=float(values[i] - reach[i]),
             high=float(values[i] + reach[i]),
             identified=bool(spread[i] < IDENTIFIED_SPREAD),
-            at_bound=bool(at_bound[i]),
+            at_bound=not inside[i],
         )
         for i, path in enumerate(problem.paths)
     )
