@@ -207,9 +207,7 @@ def named_family(family: str, dimension: int, given: Design | None) -> FitFamily
         choice("family", family, known)
     if family.endswith("-section") and dimension == 3:
         raise FitError(f"family is '{family}', and the points have three coordinates: give x and y alone")
-    named = FAMILIES.get(family.removesuffix("-section"))
-    own = None if given is None else family_of(given)
-    return own if named is None and own is not None else named
+    return FAMILIES.get(family.removesuffix("-section")) or (None if given is None else family_of(given))
 
 
 def _check_call(
