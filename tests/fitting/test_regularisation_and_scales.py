@@ -8,7 +8,7 @@ import pytest
 import bladewright as bw
 from bladewright.designs import Point, limits_at
 from bladewright.files.examples import examples
-from bladewright.fitting.free_parameters import check_bounds, given_bounds, part_range, scales_of
+from bladewright.fitting.free_parameters import check_bounds, given_bounds, parameter_range, scales_of
 from bladewright.fitting.matching.residuals import (
     BEND_SPREAD,
     CAMBER_SPREAD,
@@ -182,7 +182,7 @@ def test_an_edge_may_move_and_tilt_and_its_last_point_does_not_leave_the_others(
 def test_every_parameter_may_go_to_either_end_of_its_scale(name):
     part = example(name).section
     for path, value in part.parameters().items():
-        scale, limits = part_range(part, path, value, abs(value)), limits_at(part, path)
+        scale, limits = parameter_range(part, path, value, abs(value)), limits_at(part, path)
         if limits is None:
             continue
         assert limits.low <= scale.low < scale.high <= limits.high

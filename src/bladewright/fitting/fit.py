@@ -207,39 +207,30 @@ def named_family(family: str, dimension: int, given: Design | None) -> FitFamily
         choice("family", family, known)
     if family.endswith("-section") and dimension == 3:
         raise FitError(f"family is '{family}', and the points have three coordinates: give x and y alone")
-    named = FAMILIES.get(family.removesuffix("-section"))
-    own = None if given is None else family_of(given)
-    return own if named is None and own is not None else named
+    return FAMILIES.get(family.removesuffix("-section")) or (None if given is None else family_of(given))
 
 
 def _check_call(
     points: Reals, family: FitFamily | None, start: Design | None, like: Design | None, target: MatchTarget
 ) -> None:
     """Refuse what does not go together; growth knows the curves of a unified blade's own channel alone."""
-    if family is None:
-        kinds, of_family = {2: UnifiedSection, 3: UnifiedBlade}, ""
-        other, least = "points of the other kind", 14
-    else:
-        kinds, of_family = {2: family.section, 3: family.blade}, f" of the family {family.name}"
-        other, least = "another family", 4
-    kind, tolerance, count = kinds[points.shape[1]], target.tolerance, target.parameters
-    for label, design in (("start", start), ("like", like)):
+    flat, tolerance, count = points.shape[1] == 2, target.tolerance, target.parameters
+    kind: Any = UnifiedSection if flat else UnifiedBlade
+    of_family, other, least = "", "points of the other kind", 14
+    if family is not None:
+        kind = family.section if flat else family.blade
+        of_family, other, least = f" of the family {family.name}", "another family", 4
+    for label, design, resized in (("start", start, tolerance is not None or count is not None), ("like", like, True)):
         if design is not None and not isinstance(design, kind):
             raise FitError(
                 f"{label} is a {type(design).__name__}, and points with {points.shape[1]} coordinates need a "
                 f"{kind.__name__}{of_family}: give such a design, or {other}"
             )
-    if isinstance(like, UnifiedBlade) and like.flow_path is not None:
-        raise FitError(
-            "like is a unified blade in a flow path, of which only the numbers change: give it as start, or a design "
-            "with channel.hub and channel.shroud"
-        )
-    resized = tolerance is not None or count is not None
-    if resized and isinstance(start, UnifiedBlade) and start.flow_path is not None:
-        raise FitError(
-            "start is a unified blade in a flow path, whose numbers of control points are kept: leave tolerance and "
-            "parameters out, or give a start with channel.hub and channel.shroud"
-        )
+        if resized and isinstance(design, UnifiedBlade) and design.flow_path is not None:
+            raise FitError(
+                f"{label} is a unified blade in a flow path, whose numbers of control points are kept: give it as "
+                "start without tolerance and parameters, or a design with channel.hub and channel.shroud"
+            )
     if tolerance is not None:
         check_positive("tolerance", tolerance, "a positive length in metres is needed, such as 5e-5")
     if tolerance is not None and count is not None:
@@ -296,11 +287,6 @@ class _Outcome:
     failures: tuple[str, ...]
     measurement: Measurement
 
-    @property
-    def largest(self) -> float:
-        """Largest distance of an inlier [m]."""
-        return float(np.max(self.measurement.distances[self.measurement.inliers]))
-
 
 def _outcome(
     here: PlacedTask, match: Match, plain: Any, finishing: RowDesign | None, hint: Footpoints | None = None
@@ -346,7 +332,7 @@ def _with_points_left_out(outcome: _Outcome, target: MatchTarget) -> _Outcome:
     if found is match:
         return outcome
     again = _outcome(here, found, found.design.build(), outcome.finishing, measurement.footpoints)
-    return min(outcome, again, key=lambda each: each.largest)
+    return min(outcome, again, key=lambda each: each.measurement.maximum)
 
 
 def _reported(outcome: _Outcome, target: MatchTarget, notes: tuple[str, ...]) -> Fit:

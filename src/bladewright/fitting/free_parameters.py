@@ -203,54 +203,54 @@ class ParameterRange(NamedTuple):
     high: float = np.inf
 
 
-WEDGE_RANGE, ANGLE_RANGE = ParameterRange(3.0, 0.0, LARGEST_ANGLE), ParameterRange(5.0, -LARGEST_ANGLE, LARGEST_ANGLE)
-"""of a wedge angle and of any other angle [deg]"""
-SIZE_BY_NAME = {
-    **dict.fromkeys(("abscissas", "ordinates"), 0.01),
-    **dict.fromkeys(("camber", "leading_edge_curvature", "trailing_edge_curvature"), 0.02),
-    **dict.fromkeys(("suction_heights", "pressure_heights"), 0.02),
-    **dict.fromkeys(("suction_places", "pressure_places"), 0.05),
-    **dict.fromkeys(("camber_position", "front_camber", "uniform_load", "transition"), 0.1),
-    **dict.fromkeys(("maximum_thickness_at", "thickness_multiplier", "trailing_edge_slope"), 0.1),
-    **dict.fromkeys(("lift_coefficient", "design_lift", "trailing_edge_slope_factor"), 0.3),
-}
-"""of fields whose size the values do not tell, a change that matters"""
 ON_BOUND = 1e-9
 """distance from a bound, of a parameter's scale, within which it is held by it (design/matching_constants.md)"""
 INSIDE = 1e-3
 """how far inside its field's limits a parameter stays, of its size, for derivatives (design/matching_constants.md)"""
 
-OPEN = -np.inf, np.inf
-"""bounds that hold nothing"""
-
-RangeRule = Callable[[float, float], ParameterRange]
-"""from a parameter's value and the largest magnitude in its field"""
-RANGE_BY_ENDING: tuple[tuple[str | tuple[str, ...], RangeRule], ...] = (
-    ("radius", lambda _, largest: ParameterRange(max(0.5 * largest, 1e-3), SMALLEST_LENGTH)),
-    ("thickness", lambda _, largest: ParameterRange(max(0.5 * largest, 0.01), SMALLEST_LENGTH)),
-    (("stretch", "scale"), lambda *_: ParameterRange(0.3, 0.05)),
-    ("index", lambda *_: ParameterRange(1.0, 0.05)),
-    ("skew", lambda *_: ParameterRange(0.2, -0.95, 0.95)),
-    ("ratio", lambda *_: ParameterRange(0.5, 0.05)),
-    ("places", lambda *_: ParameterRange(0.05, 1e-3, 1.0 - 1e-3)),
-    ("weights", lambda value, _: ParameterRange(0.5 * value, 1e-2 * value, 1e2 * value)),
-    (("tangent_in", "tangent_out"), lambda value, _: ParameterRange(float(np.clip(0.5 * value, 2e-3, 0.05)), 1e-3)),
-    ("", lambda _, largest: ParameterRange(max(0.3 * largest, 0.02))),
+RANGES: tuple[tuple[str, Callable[[float, float], ParameterRange]], ...] = (
+    ("metal_angle_.*", lambda *_: ParameterRange(10.0, -LARGEST_ANGLE, LARGEST_ANGLE)),
+    ("leading_edge_theta|stacking.theta", lambda *_: ParameterRange(float(np.degrees(0.05)))),
+    (".*wedge.*", lambda *_: ParameterRange(3.0, 0.0, LARGEST_ANGLE)),
+    ("tangent_(in|out)", lambda *_: ParameterRange(0.2, 0.05, 1.0)),
+    (".*_tangent_(in|out)", lambda value, _: ParameterRange(float(np.clip(0.5 * value, 2e-3, 0.05)), 1e-3)),
+    (".*(abscissas|ordinates)", lambda *_: ParameterRange(0.01)),
+    (".*(suction|pressure)_places", lambda *_: ParameterRange(0.05)),
+    (
+        ".*(camber_position|front_camber|uniform_load|transition|thickness_at|multiplier|edge_slope)",
+        lambda *_: ParameterRange(0.1),
+    ),
+    (".*(camber|edge_curvature|heights)", lambda *_: ParameterRange(0.02)),
+    (".*(lift_coefficient|design_lift|slope_factor)", lambda *_: ParameterRange(0.3)),
+    (".*radius", lambda _, largest: ParameterRange(max(0.5 * largest, 1e-3), SMALLEST_LENGTH, 0.999)),
+    ("thickness_(upper|lower)", lambda _, largest: ParameterRange(max(0.5 * largest, 0.02), SMALLEST_LENGTH, 5.0)),
+    (".*thickness", lambda _, largest: ParameterRange(max(0.5 * largest, 0.01), SMALLEST_LENGTH)),
+    (".*(stretch|scale)", lambda *_: ParameterRange(0.3, 0.05)),
+    (".*index", lambda *_: ParameterRange(1.0, 0.05)),
+    (".*skew", lambda *_: ParameterRange(0.2, -0.95, 0.95)),
+    (".*ratio", lambda *_: ParameterRange(0.5, 0.05)),
+    (".*places", lambda *_: ParameterRange(0.05, 1e-3, 1.0 - 1e-3)),
+    (".*weights.*", lambda value, _: ParameterRange(0.5 * value, 1e-2 * value, 1e2 * value)),
 )
-"""of other fields of a part by the end of their name; the first ending that matches counts"""
+"""by names of fields, lengths apart, from a value and the largest magnitude in its field; the first match counts"""
 
 
-def part_range(part: Part, path: str, value: float, largest: float) -> ParameterRange:
-    """The range of a part's parameter at a path; `largest` is the largest magnitude in its field."""
-    name = re.findall(r"[a-z_]\w*", re.sub(r"\.values\[\d+\]$", "", path))[-1]
-    if name in SIZE_BY_NAME:
-        found = ParameterRange(SIZE_BY_NAME[name])
-    elif unit_at(part, path) == "deg":
-        found = WEDGE_RANGE if "wedge" in name else ANGLE_RANGE
+def parameter_range(of: Part, path: str, value: float, largest: float, chord: float = 1.0) -> ParameterRange:
+    """The range of a parameter of a design, of a chord in its own unit, or a part; `largest` magnitude in its field."""
+    name, unit = re.sub(r"\[\d+\]|\.values", "", path), unit_at(of, path)
+    rule = None if unit == "length" else next((rule for names, rule in RANGES if re.fullmatch(names, name)), None)
+    if rule is not None:
+        found = rule(value, largest)
+    elif unit == "length":
+        along_curve = path.startswith(("channel", "flow_path.", "leading_edge.", "trailing_edge."))
+        least = 1e-3 * chord if name == "axial_chord" else -np.inf
+        found = ParameterRange((0.02 if along_curve else 0.05) * chord, least)
+    elif unit == "deg":
+        found = ParameterRange(5.0, -LARGEST_ANGLE, LARGEST_ANGLE)
     else:
-        found = next(rule for ending, rule in RANGE_BY_ENDING if name.endswith(ending))(value, largest)
-    limits = limits_at(part, path)
-    if limits is None:
+        found = ParameterRange(max(0.3 * largest, 0.02))
+    limits = limits_at(of, path)
+    if limits is None or (isinstance(of, Design) and not path.startswith("section.")):
         return found
     inside = 0.0 if limits.closed else INSIDE * found.size
     return ParameterRange(found.size, max(found.low, limits.low + inside), min(found.high, limits.high - inside))
@@ -301,7 +301,7 @@ def given_bounds(given: Any) -> dict[str, tuple[float, float]]:
                 f"the bounds of {pattern} are {pair!r}: the lowest and the highest value are needed, such as (5, 9), "
                 "or None for one that is open"
             )
-        least, most = (open_end if each is None else float(each) for each, open_end in zip(ends, OPEN, strict=True))
+        least, most = (-np.inf if ends[0] is None else float(ends[0])), (np.inf if ends[1] is None else float(ends[1]))
         if not least < most:
             raise FitError(f"the bounds of {pattern} are {least:g} to {most:g}: the first must be below the second")
         bounds[pattern] = least, most
@@ -330,29 +330,12 @@ def check_bounds(design: Design, paths: Sequence[str], bounds: Mapping[str, tupl
 
 
 def _ranges(design: Design, paths: Sequence[str], chord: float) -> list[ParameterRange]:
-    """Ranges of parameters; a law's sizes follow from the largest magnitude in all of it."""
+    """Ranges of parameters; a law's sizes follow from the largest magnitude in all of it. `chord` in metres."""
     values, largest = design.parameters(), dict[str, float]()
     for path, value in values.items():
         name = path.partition("[")[0]
         largest[name] = max(largest.get(name, 0.0), abs(float(value)))
-    return [_range(design, path, float(values[path]), largest[path.partition("[")[0]], chord) for path in paths]
-
-
-def _range(design: Design, path: str, value: float, largest: float, chord: float) -> ParameterRange:
-    """The range of a parameter at a path; `largest` is the largest magnitude in its field."""
-    if path.startswith("section."):
-        return part_range(design, path, value, largest)
     length = chord / UNITS[getattr(design, "length_unit")]  # noqa: B009 - a field of every family, not of the base
-    radius = ParameterRange(max(0.5 * largest, 1e-3), SMALLEST_LENGTH, 0.999)
-    kinds = {
-        "stagger": ANGLE_RANGE,
-        "metal_angle": ParameterRange(10.0, -LARGEST_ANGLE, LARGEST_ANGLE),
-        "tangent": ParameterRange(0.2, 0.05, 1.0),
-        **dict.fromkeys(("leading_edge_radius", "trailing_edge_radius"), radius),
-        "thickness": ParameterRange(max(0.5 * largest, 0.02), SMALLEST_LENGTH, 5.0),
-        "weights": ParameterRange(0.5 * value, 1e-2 * value, 1e2 * value),
-        **dict.fromkeys(("leading_edge_theta", "stacking.theta"), ParameterRange(float(np.degrees(0.05)))),
-        "axial_chord": ParameterRange(0.05 * length, 1e-3 * length),
-        **dict.fromkeys(("channel", "flow_path.", "leading_edge.", "trailing_edge."), ParameterRange(0.02 * length)),
-    }
-    return next((kind for name, kind in kinds.items() if path.startswith(name)), ParameterRange(0.05 * length))
+    return [
+        parameter_range(design, path, float(values[path]), largest[path.partition("[")[0]], length) for path in paths
+    ]

@@ -1,8 +1,10 @@
 """What is asked of a match, and whether it may be trusted: its deviations against tolerance, noise and chord."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,13 +12,13 @@ from scipy.spatial import cKDTree
 from scipy.special import bdtrc
 
 from bladewright.fitting.assessment import coverage
+from bladewright.fitting.assessment.coverage import SIDES
 from bladewright.fitting.assessment.measurement import Measurement, ParameterEstimates
 from bladewright.fitting.assessment.result import with_unit
 from bladewright.fitting.clouds.thinning import groups
 from bladewright.fitting.matching.footpoints import BETWEEN_EDGES, EDGE_PARAMETERS, Footpoints
 from bladewright.fitting.matching.noise import EXACT, LARGEST_GROUP, NEIGHBOURS, SIGNIFICANCE, crowded_at_edges
 from bladewright.fitting.matching.search import Match
-from bladewright.nurbs.basis import Reals
 
 NEAR_EVERYWHERE = 5e-4
 """largest deviation, of the chord, up to which a match is trusted whatever the noise: 0.05 mm of 100 mm. A choice:
@@ -34,8 +36,6 @@ LARGEST_OUTLIER_SHARE = 0.1
 """share of the points that may be outliers; more are not one blade of the family (design/matching_constants.md)"""
 LISTED_NAMES = 5
 """parameters that a note lists by name"""
-SIDES = ("upper", "lower")
-"""names of the sides, by their number in footpoints"""
 HALF_BLADE_WIDTH = 0.5
 """width where the points end, of the blade's thickest, from which it is half a blade (design/matching_constants.md)"""
 SHEET_THICKNESS = 3e-3
@@ -65,6 +65,14 @@ def trusted_distance(match: Match) -> float:
     return (EXACT if match.maximum <= EXACT * match.model.chord else NEAR_EVERYWHERE) * match.model.chord
 
 
+class Finding(NamedTuple):
+    """What is said of a match."""
+
+    sentence: str
+    fails: bool = True
+    """whether the match does not pass for it"""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Acceptance:
     """What is said of a match: why it does not pass, and what else there is to know."""
@@ -74,51 +82,21 @@ class Acceptance:
     statistics: ParameterEstimates
     target: MatchTarget
 
-    def failures(self) -> Iterator[str]:
+    def failures(self) -> list[str]:
         """Why the match does not pass, each a sentence."""
-        if self.match.interrupted:
-            yield "the search was interrupted: this is the best design so far"
-        yield from self._off_the_blade()
-        coarse = list(self._too_coarse())
-        yield from coarse
-        if self._nothing_asked:
-            yield from self._too_many_parameters()
-            if not coarse:
-                # what a match that is not found misses widens its bands
-                yield from self._not_shown()
-        if not self.target.structured:
-            yield from (f"{each}: is it a whole blade? Give points there, or a start" for each in self._long_gaps())
-        yield from self._partly_shown()
+        return [each.sentence for each in self._findings if each.fails]
 
-    def notes(self) -> Iterator[str]:
+    def notes(self) -> list[str]:
         """What else there is to know, each a sentence."""
-        chord = self.match.model.chord
-        if self.target.open and EXACT * chord < self._largest <= NEAR_EVERYWHERE * chord and self._is_systematic:
-            yield f"near enough to make, but {self._not_found}"
-        if self._in_space and self._mean > GROSS_DEVIATION[0] * chord:
-            yield f"a blade in other axes is met no nearer than this: {AXES_HINT}"
-        for name, (_, share) in self._uncovered_edges.items():
-            if share <= HALF_BLADE_WIDTH:
-                yield f"no point lies around the {name}: where it ends and how round it is are guessed"
-        for name, width in coverage.foreign_edges(self.match).items():
-            yield (
-                f"the {name} of the points is cut off, {self._length(width)} wide, and the edges of this family are "
-                "round: it stays within half of that (--family profile has blunt and sharp edges)"
-            )
-        if self._nothing_asked:
-            yield from self._bare_parts()
-        if self.target.structured:
-            yield from self._long_gaps()
-        if self._loose_ends:
-            yield self._where_it_ends(self._loose_ends)
-        estimates = self.statistics.estimates
-        for words, names in (
-            ("the cloud does not determine", [each.path for each in estimates if not each.identified]),
-            ("on a bound:", [each.path for each in estimates if each.at_bound]),
-        ):
-            if names:
-                more = f" and {len(names) - LISTED_NAMES} more" if len(names) > LISTED_NAMES else ""
-                yield f"{words} {', '.join(names[:LISTED_NAMES])}{more}"
+        return [each.sentence for each in self._findings if not each.fails]
+
+    @cached_property
+    def _findings(self) -> tuple[Finding, ...]:
+        deviations = tuple(self._deviations())
+        # what a match that is not found misses widens its bands
+        known = self._nothing_asked and not any(each.fails for each in deviations)
+        parts = self._outliers(), deviations, self._bands(known), self._parts(), self._ends(known), self._parameters()
+        return tuple(chain.from_iterable(parts))
 
     @property
     def _nothing_asked(self) -> bool:
@@ -128,46 +106,31 @@ class Acceptance:
     def _in_space(self) -> bool:
         return self.measurement.footpoints.points.shape[1] == 3
 
-    @property
-    def _is_systematic(self) -> bool:
-        return self.match.noise_estimate.correlation > SHARED_VARIANCE and not self.match.interrupted
-
     @cached_property
     def _loose_ends(self) -> dict[str, float]:
         return coverage.loose_ends(self.match, self.measurement.footpoints.part(self.measurement.inliers))
 
-    @cached_property
-    def _uncovered_edges(self) -> dict[str, tuple[float, float]]:
-        return coverage.uncovered_edges(self.match)
-
-    @cached_property
-    def _bands(self) -> tuple[Footpoints, Reals]:
-        return coverage.shape_bands(self.match)
-
     @property
-    def _mean(self) -> float:
-        return float(np.mean(self.measurement.distances[self.measurement.inliers]))
-
-    @property
-    def _largest(self) -> float:
-        return float(np.max(self.measurement.distances[self.measurement.inliers]))
+    def _one_point(self) -> float:
+        """How well one point shows the shape [m] (95 %)."""
+        return coverage.NORMAL_95 * self.match.noise_estimate.noise
 
     def _length(self, metres: float, digits: int = 2) -> str:
         return with_unit(self.match.design, metres, digits)
 
-    def _off_the_blade(self) -> Iterator[str]:
+    def _outliers(self) -> Iterator[Finding]:
         """Outliers that are too many, too many beside each other, or where chance does not put them."""
         measurement, chord = self.measurement, self.match.model.chord
-        distances, count = measurement.distances, len(measurement.distances)
-        outliers = measurement.outliers
-        off = int(np.count_nonzero(outliers))
+        distances, count, off = measurement.distances, len(measurement.distances), len(measurement.outliers)
         if off > LARGEST_OUTLIER_SHARE * count:
-            yield f"{off} of {count} points lie off the blade: is it one blade, and of this family?"
+            yield Finding(f"{off} of {count} points lie off the blade: is it one blade, and of this family?")
         # points that are met as nearly as is asked are no part that is not found
+        outliers = np.zeros(count, dtype=bool)
+        outliers[measurement.outliers] = True
         outliers &= distances > (self.target.tolerance or NEAR_EVERYWHERE * chord)
         together = _largest_group(measurement.footpoints, outliers)
         if len(together) > LARGEST_GROUP * count:
-            yield (
+            yield Finding(
                 f"{len(together)} of {count} points beside each other lie up to "
                 f"{self._length(np.max(distances[together]))} off the blade: the shape is not found there, or they "
                 "belong to something else; leave them out, or give a start"
@@ -182,129 +145,142 @@ class Acceptance:
         if not places and by_chance < SIGNIFICANCE:
             places = {"inside the blade": inside}
         for place, rows in places.items():
-            yield (
+            yield Finding(
                 f"{np.count_nonzero(rows)} of {far} outliers lie {place}, up to "
                 f"{self._length(np.max(distances[rows]))} from its sides, more than by chance: is the shape not found "
                 "there, or the blade worn? Leave them out, give a start, or state a tolerance"
             )
 
-    def _too_coarse(self) -> Iterator[str]:
-        """Whether a match is coarser than was asked for, or without a tolerance than is trusted."""
+    def _deviations(self) -> Iterator[Finding]:
+        """How far off the match is, against what was asked for, or without a tolerance what is trusted."""
         measurement, chord, tolerance = self.measurement, self.match.model.chord, self.target.tolerance
+        mean, largest, worst = measurement.mean, measurement.maximum, measurement.worst
+        if self.match.interrupted:
+            yield Finding("the search was interrupted: this is the best design so far")
+        if self._in_space and mean > GROSS_DEVIATION[0] * chord:
+            yield Finding(f"a blade in other axes is met no nearer than this: {AXES_HINT}", fails=False)
         if tolerance is not None:
-            if self._largest > tolerance:
-                worst = int(np.argmax(np.where(measurement.inliers, measurement.distances, 0.0)))
-                yield (
-                    f"the largest deviation is {self._length(self._largest, 4)} ({measurement.regions[worst]}, point "
+            if largest > tolerance:
+                yield Finding(
+                    f"the largest deviation is {self._length(largest, 4)} ({measurement.regions[worst]}, point "
                     f"{worst}), and {self._length(tolerance, 4)} were asked for"
                 )
             return
-        for word, value, limit in zip(("mean", "largest"), (self._mean, self._largest), GROSS_DEVIATION, strict=True):
+        for word, value, limit in zip(("mean", "largest"), (mean, largest), GROSS_DEVIATION, strict=True):
             if value > limit * chord:
-                yield (
+                yield Finding(
                     f"the {word} deviation is {self._length(value, 4)}, {100 * value / chord:.2g} % of the chord, and "
                     f"{100 * limit:.2g} % are allowed where no tolerance is stated: give more parameters, or try "
                     "another family"
                 )
-        if self.target.parameters is None and self._largest > NEAR_EVERYWHERE * chord and self._is_systematic:
-            yield self._not_found
+        systematic = self.match.noise_estimate.correlation > SHARED_VARIANCE and not self.match.interrupted
+        near = largest <= NEAR_EVERYWHERE * chord
+        if systematic and self.target.parameters is None and not near:
+            yield Finding(self._not_found)
+        elif systematic and self.target.open and largest > EXACT * chord:
+            yield Finding(f"near enough to make, but {self._not_found}", fails=False)
 
     @property
     def _not_found(self) -> str:
         rms, noise = self.match.rms * self.match.model.chord, self.match.noise_estimate.noise
+        u, hint = self.measurement.u[self.measurement.worst], ""
+        name, away = min(((name, abs(u - end)) for name, end in EDGE_PARAMETERS.items()), key=lambda each: each[1])
+        if self.match.model.rounded and away < BETWEEN_EDGES:
+            hint = f"; it is farthest off beside the {name}, and the edges of this family are round"
         return (
             f"the shape is not found: deviations go on from point to point, {self._length(rms, 3)} rms where the "
-            f"cloud's own noise is {self._length(noise, 3)}; state the tolerance that is enough, a number of "
+            f"cloud's own noise is {self._length(noise, 3)}{hint}; state the tolerance that is enough, a number of "
             "parameters, or a start"
         )
 
-    def _too_many_parameters(self) -> Iterator[str]:
-        """Whether the points determine fewer parameters than there are."""
-        estimates, rank = self.statistics.estimates, self.statistics.rank
-        # parameters of ends that no row of points shows are a note
-        unknown = [each.path for each in estimates if not each.identified] if self._loose_ends else []
-        if rank < len(estimates) - sum(path.startswith(("channel.", "flow_path.")) for path in unknown):
-            yield (
-                f"the points determine {rank} of the {len(estimates)} parameters: give more points, a number of "
-                "parameters, or a tolerance"
-            )
-
-    @cached_property
-    def _limits(self) -> Reals:
-        """How well the shape is to be known at places (n,) where nothing is asked [m]."""
-        at_edge = self._bands[0].from_edges < BETWEEN_EDGES
-        return np.where(at_edge, GROSS_DEVIATION[1], SHOWN_SIDE) * self.match.model.chord
-
-    @cached_property
-    def _bare(self) -> dict[str, NDArray[np.bool_]]:
-        """Which places (n,) are at an edge or an end past all points there, while it is known elsewhere along it."""
-        places, half_widths = self._bands
-        return coverage.bare_places(self.match, places, half_widths <= GROSS_DEVIATION[1] * self.match.model.chord)
-
-    def _not_shown(self) -> Iterator[str]:
+    def _bands(self, known: bool) -> Iterator[Finding]:
         """Where the shape is known less well than is trusted, and than one point there would show it."""
-        (places, half_widths), chord = self._bands, self.match.model.chord
-        one_point = coverage.NORMAL_95 * self.match.noise_estimate.noise
-        limits = np.where(np.any(list(self._bare.values()), axis=0), np.inf, np.maximum(self._limits, one_point))
+        if not self._nothing_asked:
+            return
+        chord, (places, half_widths) = self.match.model.chord, coverage.shape_bands(self.match)
+        limits = chord * np.where(places.from_edges < BETWEEN_EDGES, GROSS_DEVIATION[1], SHOWN_SIDE)
+        bare = coverage.bare_places(self.match, places, half_widths <= GROSS_DEVIATION[1] * chord)
+        for name, at in bare.items():
+            rows = at & (half_widths > limits)
+            if np.any(rows):
+                letter, along = ("v", places.v[rows]) if name in EDGE_PARAMETERS else ("u", places.u[rows])
+                yield Finding(
+                    f"no point shows the {name} from {letter} = {min(along):.2g} to {max(along):.2g}: it is known "
+                    f"there to {self._length(np.max(half_widths[rows]))} either way (95 %)",
+                    fails=False,
+                )
+        limits = np.where(np.any([*bare.values()], axis=0), np.inf, np.maximum(limits, self._one_point))
         worst = int(np.argmax(half_widths / limits))
-        if half_widths[worst] > limits[worst]:
-            at = f"u = {places.u[worst]:.2g}" + (f", v = {places.v[worst]:.2g}" if self._in_space else "")
-            yield (
-                f"the points do not show the {SIDES[places.side[worst]]} side at {at}: it is known there to "
+        if known and half_widths[worst] > limits[worst]:
+            place = f"u = {places.u[worst]:.2g}" + (f", v = {places.v[worst]:.2g}" if self._in_space else "")
+            yield Finding(
+                f"the points do not show the {SIDES[places.side[worst]]} side at {place}: it is known there to "
                 f"{self._length(half_widths[worst])} either way (95 %), and "
                 f"{100 * limits[worst] / chord:.2g} % of the chord are allowed: is it a whole blade? Give more points "
                 "there, a start, a number of parameters or a tolerance"
             )
-        if self._largest <= NEAR_EVERYWHERE * chord:
-            # ends that no row shows are a note, as the sides are met
-            return
-        allowed = max(GROSS_DEVIATION[0] * chord, one_point)
-        unknown = {name: gap for name, gap in self._loose_ends.items() if gap > allowed}
-        if unknown:
-            yield (
-                f"{self._where_it_ends(unknown)}, and {100 * allowed / chord:.2g} % of the chord are allowed: give "
-                "points there, hold hub and shroud, or state a tolerance"
+
+    def _parts(self) -> Iterator[Finding]:
+        """Parts of the blade without points: long gaps, edges, a side."""
+        given, chord = self.target.structured, self.match.model.chord
+        for gap, place in coverage.bare_stretches(self.match):
+            cure = "" if given else ": is it a whole blade? Give points there, or a start"
+            yield Finding(
+                f"no point shows the {place}: {self._length(gap, 3)} without one, {100 * gap / chord:.2g} % of the "
+                f"chord{cure}",
+                fails=not given,
             )
-
-    def _where_it_ends(self, ends: Mapping[str, float]) -> str:
-        gaps = ", ".join(f"{self._length(gap)} at the {name}" for name, gap in ends.items())
-        return f"no row of points shows where the blade ends: it is known to {gaps} (95 %)"
-
-    def _bare_parts(self) -> Iterator[str]:
-        """Edges and ends without points on a part of the blade, where they are known less well than is trusted."""
-        places, half_widths = self._bands
-        for name, bare in self._bare.items():
-            rows = bare & (half_widths > self._limits)
-            if np.any(rows):
-                letter, along = ("v", places.v[rows]) if name in EDGE_PARAMETERS else ("u", places.u[rows])
-                yield (
-                    f"no point shows the {name} from {letter} = {min(along):.2g} to {max(along):.2g}: it is known "
-                    f"there to {self._length(np.max(half_widths[rows]))} either way (95 %)"
+        for name, (width, share) in coverage.uncovered_edges(self.match).items():
+            if share <= HALF_BLADE_WIDTH:
+                yield Finding(
+                    f"no point lies around the {name}: where it ends and how round it is are guessed", fails=False
                 )
-
-    def _long_gaps(self) -> Iterator[str]:
-        """Long gaps between the points around the blade."""
-        for way, place in coverage.bare_stretches(self.match):
-            share = 100 * way / self.match.model.chord
-            yield f"no point shows the {place}: {self._length(way, 3)} without one, {share:.2g} % of the chord"
-
-    def _partly_shown(self) -> Iterator[str]:
-        """Why the points must be those of a part of a blade only, if anything shows it."""
+                continue
+            yield Finding(
+                f"no point lies around the {name}, where the blade is still {self._length(width, 3)} wide, "
+                f"{share:.0%} of its thickest: is it half a blade? Give the points of the whole"
+            )
         feet, thickness = self.match.state.footpoints, coverage.least_thickness(self.match)
         between = feet.side[self.match.rows & (feet.from_edges > BETWEEN_EDGES)]
         shares = np.bincount(between, minlength=2) / max(len(between), 1)
         one_side = "is it one side of a blade alone? Give points of both"
         if len(between) and np.min(shares) < MIN_SIDE_SHARE:
-            yield f"hardly a point lies on the {SIDES[np.argmin(shares)]} side: {one_side}"
-        elif thickness < SHEET_THICKNESS * self.match.model.chord:
+            yield Finding(f"hardly a point lies on the {SIDES[np.argmin(shares)]} side: {one_side}")
+        elif thickness < SHEET_THICKNESS * chord:
             thin = self._length(thickness, 3)
-            yield f"the blade is a sheet, no more than {thin} thick at a place of its span: {one_side}"
-        for name, (width, share) in self._uncovered_edges.items():
-            if share > HALF_BLADE_WIDTH:
-                yield (
-                    f"no point lies around the {name}, where the blade is still {self._length(width, 3)} wide, "
-                    f"{share:.0%} of its thickest: is it half a blade? Give the points of the whole"
-                )
+            yield Finding(f"the blade is a sheet, no more than {thin} thick at a place of its span: {one_side}")
+
+    def _ends(self, known: bool) -> Iterator[Finding]:
+        """How well it is known where the blade ends, where no row of points shows it."""
+        ends, chord = self._loose_ends, self.match.model.chord
+        if not ends:
+            return
+        allowed = max(GROSS_DEVIATION[0] * chord, self._one_point)
+        # where the sides are met everywhere it is a note
+        fails = known and self.measurement.maximum > NEAR_EVERYWHERE * chord and max(ends.values()) > allowed
+        gaps = ", ".join(f"{self._length(gap)} at the {name}" for name, gap in ends.items())
+        cure = (
+            f", and {100 * allowed / chord:.2g} % of the chord are allowed: give points there, hold hub and shroud, or "
+        )
+        cure = f"{cure}state a tolerance" if fails else ""
+        yield Finding(f"no row of points shows where the blade ends: it is known to {gaps} (95 %){cure}", fails=fails)
+
+    def _parameters(self) -> Iterator[Finding]:
+        """Parameters that the points do not determine, and those on a bound."""
+        estimates, rank = self.statistics.estimates, self.statistics.rank
+        unknown = self.statistics.unidentified
+        # those of ends that no row of points shows are a note
+        of_ends = [path for path in unknown if self._loose_ends and path.startswith(("channel.", "flow_path."))]
+        if self._nothing_asked and rank < len(estimates) - len(of_ends):
+            yield Finding(
+                f"the points determine {rank} of the {len(estimates)} parameters: give more points, a number of "
+                "parameters, or a tolerance"
+            )
+        listed = ("the cloud does not determine", unknown), ("on a bound:", self.statistics.at_bounds)
+        for words, names in listed:
+            if names:
+                more = f" and {len(names) - LISTED_NAMES} more" if len(names) > LISTED_NAMES else ""
+                yield Finding(f"{words} {', '.join(names[:LISTED_NAMES])}{more}", fails=False)
 
 
 def _largest_group(feet: Footpoints, outliers: NDArray[np.bool_]) -> NDArray[np.intp]:

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 from scipy.special import stdtrit
 
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.cut_lines import in_meridian
-from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.free_parameters import EDGES, scales_of
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS, WallPoints, blade_ends_of
 from bladewright.fitting.matching.footpoints import EDGE_PARAMETERS, Footpoints, nearest_footpoints
-from bladewright.fitting.matching.noise import EDGE_BAND, neighbourhood_of, noise_of
+from bladewright.fitting.matching.noise import EDGE_BAND, noise_of
 from bladewright.fitting.matching.residuals import regularisation_of
 from bladewright.fitting.matching.search import Match
 from bladewright.fitting.models.model import ModelShape, blunt_edges_of, on_sides, sides_of
@@ -30,6 +30,33 @@ LAST_STEP = 1e-10
 """last step of descents, in a patch's parameters: a chord of 36 mm is met to 1e-11 m, and with 1e-8 to 2e-10 m"""
 OFF_SIDES = 3.0
 """standard deviations from which a point is off the sides, maybe on another face: three sigma (Pukelsheim 1994)"""
+
+FIGURES = ("mean", "rms", "percentile_99", "maximum")
+"""figures of a deviation that are reported"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Deviation:
+    """Distances of some points of a cloud from the surface [m]."""
+
+    count: int
+    mean: float
+    rms: float
+    percentile_99: float
+    maximum: float
+
+
+def deviation_of(distances: Reals) -> Deviation:
+    """The figures of distances (n,) [m]; no numbers where there are none."""
+    if len(distances) == 0:
+        return Deviation(count=0, **dict.fromkeys(FIGURES, math.nan))
+    return Deviation(
+        count=len(distances),
+        mean=float(np.mean(distances)),
+        rms=float(np.sqrt(np.mean(distances**2))),
+        percentile_99=float(np.percentile(distances, 99.0)),
+        maximum=float(np.max(distances)),
+    )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -58,17 +85,37 @@ class PlacesOfPoints:
         """(n,) true distances from the surface [m]."""
         return np.sqrt(self.deviations**2)
 
+    @property
+    def outliers(self) -> NDArray[np.intp]:
+        """Indices of the points that are outliers."""
+        return np.flatnonzero(~self.inliers & (self.set_aside == ""))
+
+    @property
+    def worst(self) -> int:
+        """Index of the inlier that is farthest off."""
+        return int(np.argmax(np.where(self.inliers, self.distances, -np.inf)))
+
+    @cached_property
+    def deviation(self) -> Deviation:
+        """Of all inliers."""
+        return deviation_of(self.distances[self.inliers])
+
+    @property
+    def mean(self) -> float:
+        """Mean distance of the inliers [m]."""
+        return self.deviation.mean
+
+    @property
+    def maximum(self) -> float:
+        """Largest distance of an inlier [m]."""
+        return self.deviation.maximum
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Measurement(PlacesOfPoints):
     """Where the n points of a cloud lie on what was built, with the footpoints before cuts and fillets."""
 
     footpoints: Footpoints
-
-    @property
-    def outliers(self) -> NDArray[np.bool_]:
-        """(n,) whether a point is an outlier."""
-        return np.asarray(~self.inliers & (self.set_aside == ""))
 
 
 def measured(
@@ -166,14 +213,8 @@ def off_finished_faces(points: Reals, built: Blade) -> tuple[NDArray[np.str_], R
 
 IDENTIFIED_SPREAD = 0.3
 """deviation of a determined parameter, of its scale: the 95 % interval is about one (design/matching_constants.md)"""
-CORRELATED_POINTS, CORRELATED_NEIGHBOURS = 2000, 512
-"""points that are compared with neighbours, and these at most; they bound the time (design/matching_constants.md)"""
-FIRST_NEIGHBOURS, BY_CHANCE = 4, 2.0
-"""neighbours compared first, doubled each time, and standard errors of a correlation by chance (95 %: Bartlett 1946)"""
 LARGEST_CONDITION = 1e7
 """condition of the scaled derivatives from which a parameter is not determined (design/matching_constants.md)"""
-AT_BOUND = 1e-3
-"""distance from a bound, of a parameter's scale, within which it lies on the bound (design/matching_constants.md)"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -207,12 +248,22 @@ class ParameterEstimates:
     condition: float
     """ratio of the largest to the smallest singular value of the scaled problem"""
 
+    @property
+    def unidentified(self) -> tuple[str, ...]:
+        """Parameters that the cloud does not determine."""
+        return tuple(each.path for each in self.estimates if not each.identified)
+
+    @property
+    def at_bounds(self) -> tuple[str, ...]:
+        """Parameters that lie on one of their bounds."""
+        return tuple(each.path for each in self.estimates if each.at_bound)
+
 
 def parameter_estimates(match: Match) -> ParameterEstimates:
     """From the derivatives of the residuals where a search ended, without the regularisation.
 
-    The points' distances are taken as normal errors with variances inverse to the given weights, of which as many are
-    independent as their autocorrelation says. A search may weigh points further by their distances; that takes no error
+    The points' distances are taken as normal errors with variances inverse to the given weights, of which fewer are
+    independent where neighbours share them. A search may weigh points further by their distances; that takes no error
     away. A parameter on a bound is held there, as an active constraint holds it (Nocedal and Wright 2006, section
     12.3). References: Bates and Watts 1988, section 2.3 (linear approximation); Seber and Wild 1989, section 2.1.4
     (weights that are not the inverse variances).
@@ -231,9 +282,8 @@ def parameter_estimates(match: Match) -> ParameterEstimates:
     covariance[np.ix_(inside, inside)] = variance * turns[known].T @ middle @ turns[known]
     spread = np.sqrt(np.diag(covariance))
     spread[np.flatnonzero(inside)[np.any(np.abs(turns[~known]) > np.sqrt(np.finfo(float).eps), axis=0)]] = np.inf
-    deviations, near = spread * scales.size, AT_BOUND * scales.size
+    deviations = spread * scales.size
     reach = float(stdtrit(left, 0.975)) * deviations
-    at_bound = (values - scales.low < np.minimum(near, 0.1 * np.abs(values))) | (scales.high - values < near)
     estimates = tuple(
         Estimate(
             path=path,
@@ -242,7 +292,7 @@ def parameter_estimates(match: Match) -> ParameterEstimates:
             low=float(values[i] - reach[i]),
             high=float(values[i] + reach[i]),
             identified=bool(spread[i] < IDENTIFIED_SPREAD),
-            at_bound=bool(at_bound[i]),
+            at_bound=not inside[i],
         )
         for i, path in enumerate(problem.paths)
     )
@@ -272,30 +322,6 @@ def shape_covariance(match: Match) -> tuple[tuple[str, ...], Reals]:
     covariance = np.zeros((len(inside), len(inside)))
     covariance[np.ix_(inside, inside)] = (turns.T / singular**2) @ turns
     return paths, covariance * np.outer(sizes, sizes)
-
-
-def independent_share(places: Reals, residuals: Reals) -> float:
-    """Share of residuals (n,) at places (n, d) that count as independent: the effective sample size over n.
-
-    Its inverse is one and the sum of a residual's correlations with all others (Bayley and Hammersley 1946), here with
-    ever more of the nearest until they correlate no more than by chance.
-    """
-    most = min(CORRELATED_NEIGHBOURS, len(residuals) // 4)
-    variance = float(np.mean(residuals**2))
-    if most < FIRST_NEIGHBOURS or variance == 0.0:
-        return 1.0
-    some = random_subset(len(residuals), CORRELATED_POINTS)
-    index = cKDTree(places).query(places[some], k=most + 1)[1][:, 1:]
-    correlations = np.mean(residuals[some, None] * residuals[index], axis=0) / variance
-    total, first, last = 0.0, 0, FIRST_NEIGHBOURS
-    while first < last:
-        # each pair is counted about twice
-        pairs = 0.5 * len(some) * (last - first)
-        if np.mean(correlations[first:last]) < BY_CHANCE / np.sqrt(pairs):
-            break
-        total += float(np.sum(correlations[first:last]))
-        first, last = last, min(2 * last, most)
-    return 1.0 / (1.0 + total)
 
 
 def undetermined_parameters(match: Match, margin: float) -> list[str]:
@@ -329,8 +355,7 @@ def _linearised(match: Match, paths: Sequence[str], sizes: Reals) -> tuple[Reals
     taking = cloud.roots > 0.0
     excess[:count] = np.where(taking, cloud.roots**2 / np.where(cloud.precision > 0.0, cloud.precision, 1.0), 1.0)
     excess[count : count + len(cloud.ends.near)] = excess[cloud.ends.near]
-    places = neighbourhood_of(cloud.points, match.state.footpoints).places
-    share = independent_share(places[taking], (rows / np.sqrt(excess))[:count][taking])
+    share = match.noise_estimate.independent_share(len(problem.paths))
     inside = problem.scales.inside(problem.values_of(match.design))
     points, parameters = int(np.count_nonzero(taking)), int(np.count_nonzero(inside))
     variance = float(np.sum(rows[:count] ** 2 / excess[:count])) / max(points - parameters, 1) / share

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bladewright.designs import Design, unit_at
 from bladewright.display import Shown
-from bladewright.fitting.assessment.measurement import ParameterEstimates, PlacesOfPoints
+from bladewright.fitting.assessment.measurement import (
+    FIGURES,
+    Deviation,
+    ParameterEstimates,
+    PlacesOfPoints,
+    deviation_of,
+)
 from bladewright.frozen import FrozenRecord
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
@@ -26,8 +31,6 @@ FEW_PARAMETERS = 30
 """parameters up to which the text shows all of them; with more it shows the doubtful ones"""
 REGIONS = ("sides", "leading edge", "trailing edge", "ends")
 """regions of a blade in which a point of a cloud may lie"""
-FIGURES = ("mean", "rms", "percentile_99", "maximum")
-"""figures of a deviation that are reported"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,30 +51,6 @@ class Motion:
         if first is None:
             return self
         return Motion(rotation=self.rotation @ first.rotation, translation=self(first.translation))
-
-
-@dataclass(frozen=True, kw_only=True)
-class Deviation:
-    """Distances of some points of a cloud from the surface [m]."""
-
-    count: int
-    mean: float
-    rms: float
-    percentile_99: float
-    maximum: float
-
-
-def deviation_of(distances: Reals) -> Deviation:
-    """The figures of distances (n,) [m]; no numbers where there are none."""
-    if len(distances) == 0:
-        return Deviation(count=0, **dict.fromkeys(FIGURES, math.nan))
-    return Deviation(
-        count=len(distances),
-        mean=float(np.mean(distances)),
-        rms=float(np.sqrt(np.mean(distances**2))),
-        percentile_99=float(np.percentile(distances, 99.0)),
-        maximum=float(np.max(distances)),
-    )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -106,54 +85,21 @@ class Fit(PlacesOfPoints, ParameterEstimates, FrozenRecord, Shown):
         return not self.failures
 
     @cached_property
-    def deviation(self) -> Deviation:
-        """Of all inliers."""
-        return deviation_of(self.distances[self.inliers])
-
-    @cached_property
     def by_region(self) -> dict[str, Deviation]:
         """Of the inliers of each region that has some."""
-        return self._by_name(self.inliers, self.regions, REGIONS)
+        found = {name: deviation_of(self.distances[self.inliers & (self.regions == name)]) for name in REGIONS}
+        return {name: each for name, each in found.items() if each.count}
 
     @cached_property
     def by_kind_set_aside(self) -> dict[str, Deviation]:
         """Of the points that are set aside, by what they lie on."""
-        return self._by_name(self.set_aside != "", self.set_aside, [str(kind) for kind in np.unique(self.set_aside)])
-
-    def _by_name(self, rows: NDArray[np.bool_], names: NDArray[np.str_], known: Sequence[str]) -> dict[str, Deviation]:
-        """Of those of some points (n,) that have each of the known names, where there are any."""
-        found = {name: deviation_of(self.distances[rows & (names == name)]) for name in known}
-        return {name: each for name, each in found.items() if each.count}
-
-    @property
-    def mean(self) -> float:
-        """Mean distance of the inliers [m]."""
-        return self.deviation.mean
-
-    @property
-    def maximum(self) -> float:
-        """Largest distance of an inlier [m]."""
-        return self.deviation.maximum
+        kinds = [str(kind) for kind in np.unique(self.set_aside) if kind]
+        return {kind: deviation_of(self.distances[self.set_aside == kind]) for kind in kinds}
 
     @property
     def chord(self) -> float:
         """Chord of what was built, the mean over the span [m]."""
         return float(np.real(self.built.chord))
-
-    @property
-    def outliers(self) -> NDArray[np.intp]:
-        """Indices of the points that are outliers."""
-        return np.flatnonzero(~self.inliers & (self.set_aside == ""))
-
-    @property
-    def unidentified(self) -> tuple[str, ...]:
-        """Parameters that the cloud does not determine."""
-        return tuple(each.path for each in self.estimates if not each.identified)
-
-    @property
-    def at_bounds(self) -> tuple[str, ...]:
-        """Parameters that lie on one of their bounds."""
-        return tuple(each.path for each in self.estimates if each.at_bound)
 
     def to_dict(self) -> dict[str, Any]:
         """The report: plain numbers, strings, lists and dictionaries, ready for JSON; what is not finite is None.
@@ -269,7 +215,7 @@ def _worst(fit: Fit) -> dict[str, Any] | None:
     """The inlier that is farthest off."""
     if not np.any(fit.inliers):
         return None
-    i = int(np.argmax(np.where(fit.inliers, fit.distances, -np.inf)))
+    i = fit.worst
     return {
         "index": i,
         "point_m": fit.cloud[i],

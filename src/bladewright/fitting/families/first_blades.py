@@ -25,7 +25,7 @@ from bladewright.fitting.families.sections import (
     first_designs,
     misfits,
 )
-from bladewright.fitting.free_parameters import EDGES, FreeParameters, part_range
+from bladewright.fitting.free_parameters import EDGES, FreeParameters, parameter_range
 from bladewright.fitting.initial_guess.blade import FirstBlade
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.search import Match, Task, can_be_built, searched
@@ -262,7 +262,7 @@ def _along_span(shapes: Sequence[SectionShape], part: Any) -> list[Any]:
     def changed(path: str, value: float, first: float, there: float) -> float:
         unit = unit_at(part, path)
         by_ratio = unit != "deg" and min(value, first, there) > 0.0
-        allowed = part_range(part, path, value, abs(value))
+        allowed = parameter_range(part, path, value, abs(value))
         found = value * there / first if by_ratio else value + there - first
         return float(np.clip(found, min(value, allowed.low), max(value, allowed.high)))
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from bladewright.fitting.families.closed_blade import PLACES, SectionShape
-from bladewright.fitting.free_parameters import part_range
+from bladewright.fitting.free_parameters import parameter_range
 from bladewright.fitting.models.designs import SINGLE_SECTION
 from bladewright.numerics.elementary import length
 from bladewright.nurbs.basis import Reals
@@ -258,7 +258,7 @@ def _(like: Profile, shape: SectionShape) -> Profile:
     changes = {}
     for name, value in values.items():
         if vars(like).get(name) is not None:
-            allowed = part_range(like, name, value, abs(value))
+            allowed = parameter_range(like, name, value, abs(value))
             changes[name] = float(np.clip(value, allowed.low, allowed.high))
     return replace(like, **changes)
 

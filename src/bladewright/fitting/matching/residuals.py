@@ -298,9 +298,9 @@ class MatchProblem(ConstrainedProblem):
         if state is None:
             return None
         try:
-            edges = self.model.edge_radius_margin_rates(state.shape, self.paths)
+            edges, constraints = self.model.limit_rates(state.shape, self.paths)
             over, heights = (edges[:, i].reshape(len(self.paths), -1).T for i in (0, 1))
-            margins = np.concatenate([over, self.model.constraint_rates(state.shape, self.paths).T])
+            margins = np.concatenate([over, constraints.T])
             slopes = self.cloud_residuals.slopes(state, self.paths)
         except DesignError:
             return None
