@@ -9,14 +9,16 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 from scipy.special import stdtrit
 
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.cut_lines import in_meridian
+from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.free_parameters import EDGES, scales_of
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS, WallPoints, blade_ends_of
 from bladewright.fitting.matching.footpoints import EDGE_PARAMETERS, Footpoints, nearest_footpoints
-from bladewright.fitting.matching.noise import EDGE_BAND, noise_of
+from bladewright.fitting.matching.noise import EDGE_BAND, neighbourhood_of, noise_of
 from bladewright.fitting.matching.residuals import regularisation_of
 from bladewright.fitting.matching.search import Match
 from bladewright.fitting.models.model import ModelShape, blunt_edges_of, on_sides, sides_of
@@ -213,6 +215,10 @@ def off_finished_faces(points: Reals, built: Blade) -> tuple[NDArray[np.str_], R
 
 IDENTIFIED_SPREAD = 0.3
 """deviation of a determined parameter, of its scale: the 95 % interval is about one (design/matching_constants.md)"""
+CORRELATED_POINTS, CORRELATED_NEIGHBOURS = 2000, 512
+"""points that are compared with neighbours, and these at most; they bound the time (design/matching_constants.md)"""
+FIRST_NEIGHBOURS, BY_CHANCE = 4, 2.0
+"""neighbours compared first, doubled each time, and standard errors of a correlation by chance (95 %: Bartlett 1946)"""
 LARGEST_CONDITION = 1e7
 """condition of the scaled derivatives from which a parameter is not determined (design/matching_constants.md)"""
 
@@ -262,8 +268,8 @@ class ParameterEstimates:
 def parameter_estimates(match: Match) -> ParameterEstimates:
     """From the derivatives of the residuals where a search ended, without the regularisation.
 
-    The points' distances are taken as normal errors with variances inverse to the given weights, of which fewer are
-    independent where neighbours share them. A search may weigh points further by their distances; that takes no error
+    The points' distances are taken as normal errors with variances inverse to the given weights, of which as many are
+    independent as their autocorrelation says. A search may weigh points further by their distances; that takes no error
     away. A parameter on a bound is held there, as an active constraint holds it (Nocedal and Wright 2006, section
     12.3). References: Bates and Watts 1988, section 2.3 (linear approximation); Seber and Wild 1989, section 2.1.4
     (weights that are not the inverse variances).
@@ -324,6 +330,30 @@ def shape_covariance(match: Match) -> tuple[tuple[str, ...], Reals]:
     return paths, covariance * np.outer(sizes, sizes)
 
 
+def independent_share(places: Reals, residuals: Reals) -> float:
+    """Share of residuals (n,) at places (n, d) that count as independent: the effective sample size over n.
+
+    Its inverse is one and the sum of a residual's correlations with all others (Bayley and Hammersley 1946), here with
+    ever more of the nearest until they correlate no more than by chance.
+    """
+    most = min(CORRELATED_NEIGHBOURS, len(residuals) // 4)
+    variance = float(np.mean(residuals**2))
+    if most < FIRST_NEIGHBOURS or variance == 0.0:
+        return 1.0
+    some = random_subset(len(residuals), CORRELATED_POINTS)
+    index = cKDTree(places).query(places[some], k=most + 1)[1][:, 1:]
+    correlations = np.mean(residuals[some, None] * residuals[index], axis=0) / variance
+    total, first, last = 0.0, 0, FIRST_NEIGHBOURS
+    while first < last:
+        # each pair is counted about twice
+        pairs = 0.5 * len(some) * (last - first)
+        if np.mean(correlations[first:last]) < BY_CHANCE / np.sqrt(pairs):
+            break
+        total += float(np.sum(correlations[first:last]))
+        first, last = last, min(2 * last, most)
+    return 1.0 / (1.0 + total)
+
+
 def undetermined_parameters(match: Match, margin: float) -> list[str]:
     """Parameters without which the points determine all others, by a margin in standard deviations.
 
@@ -355,7 +385,8 @@ def _linearised(match: Match, paths: Sequence[str], sizes: Reals) -> tuple[Reals
     taking = cloud.roots > 0.0
     excess[:count] = np.where(taking, cloud.roots**2 / np.where(cloud.precision > 0.0, cloud.precision, 1.0), 1.0)
     excess[count : count + len(cloud.ends.near)] = excess[cloud.ends.near]
-    share = match.noise_estimate.independent_share(len(problem.paths))
+    places = neighbourhood_of(cloud.points, match.state.footpoints).places
+    share = independent_share(places[taking], (rows / np.sqrt(excess))[:count][taking])
     inside = problem.scales.inside(problem.values_of(match.design))
     points, parameters = int(np.count_nonzero(taking)), int(np.count_nonzero(inside))
     variance = float(np.sum(rows[:count] ** 2 / excess[:count])) / max(points - parameters, 1) / share
