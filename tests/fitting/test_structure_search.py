@@ -22,7 +22,8 @@ def match(count, maximum=None):
 def found_by(monkeypatch):
     """Runs the search from a rich match: what it finds, the nearest that fails, and what it searched."""
     monkeypatch.setattr(StructureSearch, "_model", lambda _, match: match)
-    monkeypatch.setattr(StructureSearch, "_built", lambda _, match: match)
+    monkeypatch.setattr(structure_search, "buildable", lambda _, match: match)
+    monkeypatch.setattr(structure_search, "can_be_built", lambda _: True)
     monkeypatch.setattr(StructureSearch, "_widened", lambda _, match, _rounds: SimpleNamespace(**vars(match)))
 
     def run(predicted, enough, largest, shapeless=()):
@@ -136,10 +137,11 @@ def test_a_match_is_sought_again_where_it_is_clearly_further_off_than_the_rich_o
     largest = {"rich": rich, "found": found, "nearer": 0.9 * found}
     of = {
         name: SimpleNamespace(
-            maximum=distance, model=SimpleNamespace(chord=1.0), can_be_built=True, has_systematic_misfit=True
+            maximum=distance, model=SimpleNamespace(chord=1.0), design=None, has_systematic_misfit=True
         )
         for name, distance in largest.items()
     }
+    monkeypatch.setattr(structure_search, "can_be_built", lambda _: True)
     monkeypatch.setattr(StructureSearch, "well_predicted", lambda *_: of["found"])
     monkeypatch.setattr(StructureSearch, "within", lambda *_: (of["nearer"], ""))
     search = StructureSearch(task=None, samples=0, first=None)

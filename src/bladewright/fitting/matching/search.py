@@ -5,8 +5,10 @@ search in exact data ends free of it. Knots, outliers and what lies at the ends 
 """
 
 from collections.abc import Callable, Collection, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -14,13 +16,12 @@ from numpy.typing import NDArray
 
 from bladewright.designs import Design
 from bladewright.domain.row import turn_matrix
-from bladewright.errors import DesignError, FitError
+from bladewright.errors import BladewrightError, DesignError, FitError
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.free_parameters import FreeParameters, scales_of
-from bladewright.fitting.matching.best_so_far import BestSoFar
 from bladewright.fitting.matching.blade_ends import FACE_BAND, ROW_BAND, BladeEnds, blade_ends_of, edge_overhang_of
 from bladewright.fitting.matching.footpoints import nearest_footpoints
-from bladewright.fitting.matching.noise import EXACT, NoiseEstimate, doubted_outliers, noise_of
+from bladewright.fitting.matching.noise import EXACT, NoiseEstimate, noise_of
 from bladewright.fitting.matching.residuals import CloudResiduals, MatchProblem, PlacedCloud, regularisation_of
 from bladewright.fitting.models.model import Model, model_of
 from bladewright.numerics.least_squares import FIRST_DAMPING, MIN_REDUCTION, constrained_minimum
@@ -45,6 +46,10 @@ EXACT_MISFIT = 3e-14
 """misfit below which nothing is left to find, of the chord: rounding (design/matching_constants.md)"""
 NATIVE_TOLERANCE_OF_NOISE = 0.1
 """tolerance of the native surfaces in a round, of the noise (design/matching_constants.md)"""
+KEPT_DESIGNS = 3
+"""designs of as many parameters that are kept, as the nearest may not be built (design/matching_constants.md)"""
+REFUSED_MARGIN = 6.0
+"""factor of the margin of edge radii where a match is refused when built (design/matching_constants.md)"""
 EDGE_RADIUS_MARGIN = {2: 2e-6, 3: 2e-5}
 """margin by which the control point that sets an edge's radius is held below the thickness beside it, of the section's
 extent, by dimension: a blade is refused between its stations too (design/matching_constants.md)"""
@@ -57,81 +62,6 @@ EXACT_NOISE = 1e-5
 
 Progress = Callable[[str], None]
 """is handed a few words on what is done"""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Task:
-    """What is sought: points, weights, free parameters and bounds."""
-
-    points: Reals
-    """(n, d) of the cloud [m]"""
-    weights: Reals
-    """(n,) of the points in the sum of squares, 1 on average"""
-    free: FreeParameters = field(default_factory=FreeParameters)
-    """the free parameters of a design, whatever its structure"""
-    bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    """lowest and highest values by pattern, in the units of the fields"""
-    progress: Progress = lambda _: None
-    regularisation_factor: float = 1.0
-    """factor of the regularisation"""
-    margin_factor: float = 1.0
-    """factor of the margin that keeps edge radii from what is refused"""
-    precision: Reals | None = None
-    """(n,) inverse variances of the points, relative to each other; None where they are equal"""
-    allow_outliers: bool = True
-    """whether points may be outliers; where none may, edges stand out of exact ones no further than of noisy ones"""
-    trusted: NDArray[np.bool_] | None = None
-    """(n,) points that are no outliers"""
-    cut_edges: frozenset[str] = frozenset()
-    """edges that are cut off, which may stand out of the cloud"""
-    preliminary: bool = False
-    """whether a search is only to begin another: what its few control points miss is shared by neighbours, no noise"""
-    walls: tuple[Reals, ...] = ()
-    """(m, 2) points of hub and shroud beside the blade, in (x, r) or (x, z) [m]: they show where it ends"""
-    outline: tuple[Reals, ...] = ()
-    """(m, 2) places of hub and shroud on the outline of the points [m], by which a preliminary search knows its ends"""
-    turn: float = 0.0
-    """angle about x by which the points are turned from where they are given [rad]"""
-    held: frozenset[str] = frozenset()
-    """parameters that are held as the points do not determine them"""
-    best_so_far: BestSoFar = field(default_factory=BestSoFar)
-
-    @property
-    def dimension(self) -> int:
-        """2 for a cloud of a section, 3 for one of a blade."""
-        return int(self.points.shape[1])
-
-    def thinned(self, most: int) -> "Task":
-        """The same task with at most so many of its points, drawn at random but always the same."""
-        return self.part(random_subset(len(self.points), most))
-
-    def turned(self, angle: float) -> "Task":
-        """The same task with its points (n, 3) turned about x, so that theta grows by an angle [rad]."""
-        if not angle:
-            return self
-        return replace(self, points=self.points @ turn_matrix(angle).T, turn=self.turn + angle)
-
-    def without(self, paths: Collection[str]) -> "Task":
-        """The same task with some parameters that do not change."""
-        return replace(self, free=replace(self.free, held=self.free.held.union(paths)))
-
-    def holding(self, held: Collection[str]) -> "Task":
-        """The same task with some parameters held that the points do not determine."""
-        return replace(self.without(held), held=self.held | {*held})
-
-    def trusting(self, match: "Match") -> "Task":
-        """The same task, in which no point is an outlier that a match of it counts as the blade's."""
-        return replace(self, trusted=match.rows)
-
-    def part(self, rows: NDArray[np.intp]) -> "Task":
-        """The same task with some of the points (m,)."""
-        return replace(
-            self,
-            points=self.points[rows],
-            weights=self.weights[rows],
-            precision=None if self.precision is None else self.precision[rows],
-            trusted=None if self.trusted is None else self.trusted[rows],
-        )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -198,10 +128,121 @@ class Match:
         """Whether neighbouring points tell that the cloud has next to no noise."""
         return self.noise_estimate.noise < EXACT_NOISE * self.model.chord
 
+
+@dataclass(frozen=True, eq=False)
+class BestSoFar:
+    """The nearest matches so far, by their number of parameters, as the last may be interrupted, or cannot be built."""
+
+    found: dict[int, list[Match]] = field(default_factory=dict)
+
+    def note(self, found: Match) -> None:
+        """Keeps the end of a round if few of as many parameters are nearer."""
+        if np.isfinite(found.mean_distance):
+            alike = [*self.found.get(count := len(found.problem.paths), ()), found]
+            self.found[count] = sorted(alike, key=lambda each: each.mean_distance)[:KEPT_DESIGNS]
+
+    def built(
+        self, least_tolerance: float = 0.0, suits: Callable[[Match], bool] = lambda _: True
+    ) -> tuple[Match, Any] | None:
+        """The nearest match that suits and can be built, no finer than a tolerance, and what it builds, or None."""
+        suitable = filter(suits, chain.from_iterable(self.found.values()))
+        for found in sorted(suitable, key=lambda each: each.mean_distance):
+            tolerance = getattr(found.design, "tolerance", None)
+            design = found.design.changed({} if tolerance is None else {"tolerance": max(tolerance, least_tolerance)})
+            with suppress(BladewrightError):
+                return replace(found, design=design), design.build()
+        return None
+
+    def instead_of(self, refused: Match, error: Exception, *, structured: bool) -> tuple[Match, Any, str]:
+        """The same of the family of a match that cannot be built, and a note; raises FitError where there is none.
+
+        It has as many parameters at most, and the same ones where the structure is given (`structured`).
+        """
+        paths = refused.problem.paths
+
+        def suits(found: Match) -> bool:
+            alike = found.problem.paths == paths if structured else len(found.problem.paths) <= len(paths)
+            return alike and isinstance(found.design, type(refused.design))
+
+        found, refusal = self.built(suits=suits), f"the nearest design cannot be built ({error})"
+        if found is None:
+            raise FitError(f"{refusal}; give a start design, or bounds that keep off it") from error
+        return *found, f"{refusal}, and the nearest that can is given"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Task:
+    """What is sought: points, weights, free parameters and bounds."""
+
+    points: Reals
+    """(n, d) of the cloud [m]"""
+    weights: Reals
+    """(n,) of the points in the sum of squares, 1 on average"""
+    free: FreeParameters = field(default_factory=FreeParameters)
+    """the free parameters of a design, whatever its structure"""
+    bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    """lowest and highest values by pattern, in the units of the fields"""
+    progress: Progress = lambda _: None
+    regularisation_factor: float = 1.0
+    """factor of the regularisation"""
+    margin_factor: float = 1.0
+    """factor of the margin that keeps edge radii from what is refused"""
+    precision: Reals | None = None
+    """(n,) inverse variances of the points, relative to each other; None where they are equal"""
+    allow_outliers: bool = True
+    """whether points may be outliers; where none may, edges stand out of exact ones no further than of noisy ones"""
+    trusted: NDArray[np.bool_] | None = None
+    """(n,) points that are no outliers"""
+    cut_edges: frozenset[str] = frozenset()
+    """edges that are cut off, which may stand out of the cloud"""
+    preliminary: bool = False
+    """whether a search is only to begin another: what its few control points miss is shared by neighbours, no noise"""
+    walls: tuple[Reals, ...] = ()
+    """(m, 2) points of hub and shroud beside the blade, in (x, r) or (x, z) [m]: they show where it ends"""
+    outline: tuple[Reals, ...] = ()
+    """(m, 2) places of hub and shroud on the outline of the points [m], by which a preliminary search knows its ends"""
+    turn: float = 0.0
+    """angle about x by which the points are turned from where they are given [rad]"""
+    held: frozenset[str] = frozenset()
+    """parameters that are held as the points do not determine them"""
+    best_so_far: BestSoFar = field(default_factory=BestSoFar)
+
     @property
-    def can_be_built(self) -> bool:
-        """Whether `build` takes the design; it may not, though a search does: edge radii need a larger margin."""
-        return can_be_built(self.design)
+    def dimension(self) -> int:
+        """2 for a cloud of a section, 3 for one of a blade."""
+        return int(self.points.shape[1])
+
+    def thinned(self, most: int) -> "Task":
+        """The same task with at most so many of its points, drawn at random but always the same."""
+        return self.part(random_subset(len(self.points), most))
+
+    def turned(self, angle: float) -> "Task":
+        """The same task with its points (n, 3) turned about x, so that theta grows by an angle [rad]."""
+        if not angle:
+            return self
+        return replace(self, points=self.points @ turn_matrix(angle).T, turn=self.turn + angle)
+
+    def without(self, paths: Collection[str]) -> "Task":
+        """The same task with some parameters that do not change."""
+        return replace(self, free=replace(self.free, held=self.free.held.union(paths)))
+
+    def holding(self, held: Collection[str]) -> "Task":
+        """The same task with some parameters held that the points do not determine."""
+        return replace(self.without(held), held=self.held | {*held})
+
+    def trusting(self, match: Match) -> "Task":
+        """The same task, in which no point is an outlier that a match of it counts as the blade's."""
+        return replace(self, trusted=match.rows)
+
+    def part(self, rows: NDArray[np.intp]) -> "Task":
+        """The same task with some of the points (m,)."""
+        return replace(
+            self,
+            points=self.points[rows],
+            weights=self.weights[rows],
+            precision=None if self.precision is None else self.precision[rows],
+            trusted=None if self.trusted is None else self.trusted[rows],
+        )
 
 
 def can_be_built(design: Any) -> bool:
@@ -211,6 +252,19 @@ def can_be_built(design: Any) -> bool:
     except DesignError:
         return False
     return True
+
+
+def buildable(task: Task, match: Match) -> Match | None:
+    """A match that `build` takes: where it is refused, one whose edge radii are kept further off; None of none."""
+    if can_be_built(match.design):
+        return match
+    # what a match holds stays held
+    further = replace(task, margin_factor=REFUSED_MARGIN, free=FreeParameters(free=match.problem.paths))
+    try:
+        found = searched(further, match.design, noise=match.rms, rounds=1, min_reduction=ROUGH_REDUCTION)
+    except FitError:
+        return None
+    return found if can_be_built(found.design) else None
 
 
 def searched(
@@ -342,18 +396,3 @@ def _moved(match: Match, z: Reals) -> Match:
     state = problem.state(z) or match.state
     evaluations = match.evaluations + problem.evaluations
     return replace(match, design=state.shape.design, state=state, evaluations=evaluations)
-
-
-def without_false_outliers(task: Task, match: Match) -> Match:
-    """A match to those outliers too that may be points of a nose that is not found, where it takes most of them."""
-    inliers, feet, systematic = match.noise_estimate.inliers, match.state.footpoints, match.has_systematic_misfit
-    doubted = doubted_outliers(~inliers & ~match.ends.on_end_face, task.points, feet, systematic=systematic)
-    if not np.any(doubted):
-        return match
-    every = replace(task.part(np.flatnonzero(inliers | doubted)), allow_outliers=False)
-    try:
-        found = searched(every, match.design, noise=match.rms, rounds=QUICK_ROUNDS + 1, min_reduction=ROUGH_REDUCTION)
-        found = evaluated(task, found.design, noise=found.rms)
-    except FitError:
-        return match
-    return match if np.mean(found.noise_estimate.inliers[doubted]) <= 0.5 else found

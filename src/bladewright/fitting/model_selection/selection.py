@@ -24,15 +24,16 @@ from bladewright.fitting.assessment.acceptance import GROSS_DEVIATION, NEAR_EVER
 from bladewright.fitting.assessment.measurement import undetermined_parameters
 from bladewright.fitting.free_parameters import FreeParameters, corner_radii
 from bladewright.fitting.matching.footpoints import Side, nearest_footpoints
+from bladewright.fitting.matching.noise import doubted_outliers
 from bladewright.fitting.matching.residuals import PlacedCloud
 from bladewright.fitting.matching.search import (
     QUICK_ROUNDS,
     ROUGH_REDUCTION,
     Match,
     Task,
+    can_be_built,
     evaluated,
     searched,
-    without_false_outliers,
 )
 from bladewright.fitting.model_selection.elimination import reweighted
 from bladewright.fitting.model_selection.structure import Structure, reshaped, structure_of, with_feasible_edges
@@ -158,7 +159,7 @@ def searched_with_more(task: Task, match: Match, target: MatchTarget) -> Match:
     if target.tolerance is None:
         return _searched_further(more, match)
     found = _reweighted_further(more, match, target.tolerance)
-    return found if found.can_be_built else match
+    return found if can_be_built(found.design) else match
 
 
 def _reweighted_further(task: Task, match: Match, tolerance: float) -> Match:
@@ -175,11 +176,26 @@ def _searched_further(task: Task, match: Match) -> Match:
     try:
         found = searched(task, match.design, noise=match.rms, min_reduction=FINAL_REDUCTION)
         near = max(trusted_distance(match), NEAR_RICH * match.maximum)
-        if found.maximum > near or (not found.can_be_built and match.can_be_built):
+        if found.maximum > near or (not can_be_built(found.design) and can_be_built(match.design)):
             found = evaluated(task, match.design, noise=match.rms)
     except FitError:
         return match
     return found
+
+
+def without_false_outliers(task: Task, match: Match) -> Match:
+    """A match to those outliers too that may be points of a nose that is not found, where it takes most of them."""
+    inliers, feet, systematic = match.noise_estimate.inliers, match.state.footpoints, match.has_systematic_misfit
+    doubted = doubted_outliers(~inliers & ~match.ends.on_end_face, task.points, feet, systematic=systematic)
+    if not np.any(doubted):
+        return match
+    every = replace(task.part(np.flatnonzero(inliers | doubted)), allow_outliers=False)
+    try:
+        found = searched(every, match.design, noise=match.rms, rounds=QUICK_ROUNDS + 1, min_reduction=ROUGH_REDUCTION)
+        found = evaluated(task, found.design, noise=found.rms)
+    except FitError:
+        return match
+    return match if np.mean(found.noise_estimate.inliers[doubted]) <= 0.5 else found
 
 
 def determined(task: Task, match: Match) -> tuple[Match, str]:

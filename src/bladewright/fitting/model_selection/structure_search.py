@@ -17,7 +17,16 @@ from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, MatchTarget, trusted_distance
 from bladewright.fitting.matching.footpoints import Footpoints, part_of
 from bladewright.fitting.matching.noise import EXACT
-from bladewright.fitting.matching.search import QUICK_ROUNDS, ROUGH_REDUCTION, Match, Task, evaluated, searched
+from bladewright.fitting.matching.search import (
+    QUICK_ROUNDS,
+    ROUGH_REDUCTION,
+    Match,
+    Task,
+    buildable,
+    can_be_built,
+    evaluated,
+    searched,
+)
 from bladewright.fitting.model_selection.elimination import (
     LARGEST_PREDICTED,
     PREDICTED,
@@ -36,8 +45,6 @@ from bladewright.fitting.model_selection.structure import (
 )
 from bladewright.nurbs.basis import Reals
 
-REFUSED_MARGIN = 6.0
-"""factor of the margin of edge radii where a match is refused when built (design/matching_constants.md)"""
 NOISE_REASON = "what is left is the cloud's own noise, {:.2g} mm: more control points would follow it"
 TRIED_PARAMETERS, MOST_TRIED = 100, 4
 """parameters of the structures of one size that are searched, in all, as predictions are linear; and structures at most
@@ -130,25 +137,12 @@ class StructureSearch:
         for _ in range(STAGES):
             model = self._model(self._widened(best, rounds=self.task.dimension - 2) if best else rich)
             searches = (self._searched(model, each) for each in best_of_size(model, most)[:MOST_TRIED])
-            built = (each for found in searches if found and (each := self._built(found)))
+            built = (each for found in searches if found and (each := buildable(self.task, found)))
             fresh = min(islice(built, max(1, TRIED_PARAMETERS // most)), key=lambda each: each.misfit, default=None)
             if fresh is None or (best is not None and fresh.misfit >= best.misfit):
                 break
             best = fresh
         return best or rich
-
-    def _built(self, match: Match) -> Match | None:
-        """A match that can be built: where it is refused, one whose edge radii are kept further from what is."""
-        if match.can_be_built:
-            return match
-        roots = match.problem.cloud_residuals.roots
-        weights = np.where(roots > 0.0, roots**2, self.task.weights)
-        task = replace(self.task, margin_factor=REFUSED_MARGIN * self.task.margin_factor, weights=weights)
-        try:
-            found = searched(task, match.design, noise=match.rms, rounds=1, min_reduction=ROUGH_REDUCTION)
-        except FitError:
-            return None
-        return found if found.can_be_built else None
 
     def well_predicted(self, rich: Match) -> Match:
         """The match of fewest parameters that is at the cloud's noise, or where its misfit is none, near everywhere."""
@@ -191,7 +185,7 @@ class StructureSearch:
         if not found.has_systematic_misfit or found.maximum <= enough or rich.maximum > limit:
             return found
         nearer, _ = self.within(rich, limit)
-        return nearer if nearer.maximum < found.maximum and nearer.can_be_built else found
+        return nearer if nearer.maximum < found.maximum and can_be_built(nearer.design) else found
 
     def within(self, rich: Match, tolerance: float) -> tuple[Match, str]:
         """The match of fewest parameters found that keeps a tolerance [m]; the nearest, and why, where none does."""
@@ -207,7 +201,7 @@ class StructureSearch:
         def kept(match: Match) -> bool:
             return match.maximum <= tolerance
 
-        found, nearest = rich if kept(rich) and rich.can_be_built else None, None
+        found, nearest = rich if kept(rich) and can_be_built(rich.design) else None, None
         if kept(rich) or rich.has_systematic_misfit:
             found, nearest = self._fewest(
                 rich, found, rounds=1, predicted=predicted, search=reweighted_search, kept=kept
@@ -247,7 +241,7 @@ class StructureSearch:
             if promising:
                 chosen = promising[-1 if narrowest else len(promising) // 2]
                 fresh = search(model, chosen)
-                match = fresh and self._built(fresh)
+                match = fresh and buildable(self.task, fresh)
                 enough = match is not None and kept(match)
                 if predictions and not enough:
                     failed = chosen.parameters
