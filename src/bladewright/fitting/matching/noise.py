@@ -226,17 +226,32 @@ def noise_of(
     """The noise estimate of points (n, d) about their footpoints; those `trusted` (n,) are no outliers.
 
     Weights (n,) are inverse variances relative to each other. A point of weight 0 tells nothing of the noise, and is an
-    outlier where it lies further off than every inlier.
+    outlier where it lies further off than every inlier. Of many points some tell the noise, and others are inliers
+    where they are level with one beside them.
     """
     trusted = np.zeros(len(points), dtype=bool) if trusted is None else trusted
     weights = np.ones(len(points)) if weights is None else weights
-    rows = np.flatnonzero(weights > 0.0)
-    if len(rows) == len(points):
-        rows = random_subset(len(points), MOST_POINTS)
+    weighed = np.flatnonzero(weights > 0.0)
+    rows = weighed if len(weighed) < len(points) else random_subset(len(points), MOST_POINTS)
     rows = rows[without_copies(points[rows])]
-    if len(rows) < len(points):
-        return _noise_of_some(points, footpoints, weights, rows, trusted)
-    weights = weights / np.mean(weights)
+    part = footpoints.part(rows)
+    found = _shared_noise(points[rows], part, weights[rows] / np.mean(weights[rows]), trusted[rows])
+    if len(rows) == len(points):
+        return found
+    kept = part.part(found.inliers)
+    if len(weighed) < len(points):
+        inliers = footpoints.distances <= np.max(kept.distances)
+    else:
+        beside = cKDTree(kept.points).query(footpoints.points)[1]
+        level = found.noise * np.sqrt(1.0 + 1.0 / weights)
+        near = EXACT * float(np.max(np.ptp(points, axis=0)))
+        inliers = footpoints.distances - kept.distances[beside] <= OUTLYING_NOISE * level + near
+    inliers[rows] = found.inliers
+    return replace(found, inliers=inliers | trusted)
+
+
+def _shared_noise(points: Reals, footpoints: Footpoints, weights: Reals, trusted: NDArray[np.bool_]) -> NoiseEstimate:
+    """The noise estimate of points (n, d) of positive weights (n,), one on average, by what neighbours share."""
     heights, around = footpoints.heights, neighbourhood_of(points, footpoints)
     inliers = ~_outliers_of(footpoints, weights, around) | trusted
     index = around.index
@@ -274,24 +289,3 @@ def _linear_shares(places: Reals, beside: Reals, normals: Reals) -> Reals:
     offsets = offsets / np.where(size > 0.0, size, 1.0)
     rows = np.concatenate([np.ones((*offsets.shape[:2], 1)), offsets], axis=-1)
     return np.asarray(np.linalg.pinv(rows, rcond=FLAT)[:, 0])
-
-
-def _noise_of_some(
-    points: Reals, footpoints: Footpoints, weights: Reals, rows: NDArray[np.intp], trusted: NDArray[np.bool_]
-) -> NoiseEstimate:
-    """The noise estimate of the points in `rows`, and which of the others are inliers by it.
-
-    Those are level with an inlier beside them, or where they have no weight no further off than every inlier.
-    """
-    part = footpoints.part(rows)
-    found = noise_of(points[rows], part, weights[rows], trusted=trusted[rows])
-    kept = part.part(found.inliers)
-    if not np.all(weights > 0.0):
-        inliers = footpoints.distances <= np.max(kept.distances)
-    else:
-        beside = cKDTree(kept.points).query(footpoints.points)[1]
-        level = found.noise * np.sqrt(1.0 + 1.0 / weights)
-        near = EXACT * float(np.max(np.ptp(points, axis=0)))
-        inliers = footpoints.distances - kept.distances[beside] <= OUTLYING_NOISE * level + near
-    inliers[rows] = found.inliers
-    return replace(found, inliers=inliers | trusted)
