@@ -63,15 +63,19 @@ class ResizableLaw(ABC):
         """What is added (k,) to the embedding of numbers with other counts: ends that no number of the law moves."""
         return np.zeros(1)
 
-    def nearest_numbers(self, design: Any, counts: Counts) -> Reals:
-        """Its numbers (k,) with other counts that are nearest to a design's."""
-        own, values = self.counts_of(design), design.parameters()
-        numbers = np.array([values[path] for path in self.paths(design)], dtype=float)
-        return self.embedding(counts, own) @ numbers + self.offset(design, counts, own)
-
-    @abstractmethod
-    def resized(self, design: Any, counts: Counts, stations: Stations | None) -> Any:
+    def resized(self, design: Any, counts: Counts, stations: Stations | None) -> Any:  # noqa: ARG002 - the contract's
         """The value of its field with other counts, or at stations along the span, that is nearest to a design's."""
+        own, values = self.counts_of(design), design.parameters()
+        if counts == own:
+            return value_at(design, self.name)
+        numbers = np.array([values[path] for path in self.paths(design)], dtype=float)
+        return self.with_numbers(
+            design, counts, self.embedding(counts, own) @ numbers + self.offset(design, counts, own)
+        )
+
+    def with_numbers(self, design: Any, counts: Counts, numbers: Reals) -> Any:
+        """The value of its field with other counts, of these numbers (k,)."""
+        raise NotImplementedError
 
     def stations_of(self, design: Any) -> Stations | None:  # noqa: ARG002 - the contract's
         """The stations at which it is given in a design; their values do not count."""
@@ -240,10 +244,8 @@ class ChannelCurves(ResizableLaw):
             found[np.ix_(*places)] = _curve_embedding(counts[curve], other[curve], self.degree)
         return np.asarray(np.kron(found, np.eye(2)))
 
-    def resized(self, design: Any, counts: Counts, stations: Stations | None) -> Any:  # noqa: ARG002 - the contract's
-        if counts == self.counts_of(design):
-            return design.channel
-        curves = _split(self.nearest_numbers(design, counts).reshape(-1, 2), counts)
+    def with_numbers(self, design: Any, counts: Counts, numbers: Reals) -> Any:
+        curves = _split(numbers.reshape(-1, 2), counts)
         points = (tuple(Point(*row) for row in rows.tolist()) for rows in curves)
         return replace(design.channel, **dict(zip(CHANNEL_CURVES, points, strict=True)))
 
@@ -366,9 +368,6 @@ class SegmentPoints(ResizableLaw):
         (own, inner), (known, _) = self._basis(*counts), self._basis(*other)
         return np.linalg.lstsq(own[:, inner], known @ ends[1] - own @ ends[0], rcond=None)[0].ravel()
 
-    def resized(self, design: Any, counts: Counts, stations: Stations | None) -> Any:  # noqa: ARG002 - the contract's
-        segment = value_at(design, self.name)
-        if counts == self.counts_of(design):
-            return segment
-        points = self.nearest_numbers(design, counts).reshape(-1, 2)
-        return replace(segment, abscissas=tuple(points[:, 0].tolist()), ordinates=tuple(points[:, 1].tolist()))
+    def with_numbers(self, design: Any, counts: Counts, numbers: Reals) -> Any:  # noqa: ARG002 - the contract's
+        abscissas, ordinates = numbers.reshape(-1, 2).T.tolist()
+        return replace(value_at(design, self.name), abscissas=tuple(abscissas), ordinates=tuple(ordinates))
