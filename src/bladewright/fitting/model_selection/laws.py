@@ -212,6 +212,12 @@ def _has_sections(design: Any) -> bool:
     return True
 
 
+RICH_CHANNEL = (9, 9, 6, 6)
+"""control points of the edges, of hub and of shroud of a rich structure, which hold cubic curves of 4, 5 and 6
+(design/matching_constants.md)"""
+RICH_CURVE, RICH_SEGMENT = 8, 5
+"""points on an edge curve or a wall of a rich structure, and inner control points of a segment, which hold segments of
+one (design/matching_constants.md)"""
 CHANNEL_CURVES = ("leading_edge", "trailing_edge", "hub", "shroud")
 """the four curves of a channel"""
 FEWEST_ON_WALL = 5
@@ -227,6 +233,9 @@ class ChannelCurves(ResizableLaw):
 
     degree: int
     """highest degree of the curves"""
+    fewest: Counts = (2,) * 4
+    most: Counts = (MOST_CURVE,) * 4
+    rich: Counts = RICH_CHANNEL
     holds_corners: bool = True
     along_span: tuple[int, ...] = (0, 1)
 
@@ -282,6 +291,9 @@ class CurvePoints(ResizableLaw):
 
     axes: str
     """coordinates of its points that are free"""
+    fewest: Counts = (2,)
+    most: Counts = (MOST_CURVE,)
+    rich: Counts = (RICH_CURVE,)
     along_span: tuple[int, ...] = (0,)
 
     def counts_of(self, design: Any) -> Counts:
@@ -320,6 +332,8 @@ class WallPoints(CurvePoints):
 
     stations: tuple[float, ...]
     """of its points, fractions of its length"""
+    axes: str = "xr"
+    fewest: Counts = (FEWEST_ON_WALL,)
     holds_corners: bool = True
     along_span: tuple[int, ...] = ()
 
@@ -341,6 +355,8 @@ class SegmentPoints(ResizableLaw):
     """1 on the upper side, -1 on the lower one"""
     held: Counts
     """control points that its joints give at its ends"""
+    most: Counts = (MOST_CHORD,)
+    rich: Counts = (RICH_SEGMENT,)
 
     def counts_of(self, design: Any) -> Counts:
         return (len(value_at(design, self.name).abscissas),)
