@@ -72,7 +72,7 @@ class ResizableLaw(ABC):
         )
 
     def with_numbers(self, design: Any, counts: Counts, numbers: Reals) -> Any:
-        """The value of its field with other counts, of these numbers (k,)."""
+        """The value of its field with other counts, of these numbers (k,); laws that resize themselves need none."""
         raise NotImplementedError
 
     def stations_of(self, design: Any) -> Stations | None:  # noqa: ARG002 - the contract's
