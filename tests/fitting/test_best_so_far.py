@@ -11,8 +11,7 @@ import pytest
 
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.free_parameters import FreeParameters
-from bladewright.fitting.matching.best_so_far import BestSoFar
-from bladewright.fitting.matching.search import Task, searched
+from bladewright.fitting.matching.search import BestSoFar, Task, searched
 from machines import example
 
 SECTION = example("turbine-section")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import bladewright as bw
-from bladewright.fitting.model_selection.structure import reshaped, richest, structure_of
+from bladewright.fitting.model_selection.structure import reshaped, rich_structure, structure_of
 from bladewright.section.laws import law_points, named_laws, stations_of
 from machines import built
 from machines.stations import AXIAL, SPAN, TABLE, at_stations, moved
@@ -48,6 +48,6 @@ def test_a_like_design_says_which_laws_are_given_at_stations():
 
 def test_a_law_at_stations_keeps_them_where_other_laws_get_control_points():
     design = AXIAL["profile"]
-    wider = reshaped(design, richest(design))
+    wider = reshaped(design, rich_structure(design, design.parameters(), 10_000))
     assert dict(named_laws(wider.section))["stagger_angle"] == TABLE
     assert len(wider.section.thickness) > len(law_points(design.section.thickness))

@@ -14,7 +14,7 @@ from bladewright.fitting.families.kinds import DesignHeader, FitFamily
 from bladewright.fitting.families.sections import PROMISING, criterion, inliers_of, is_far, misfits
 from bladewright.fitting.free_parameters import check_bounds
 from bladewright.fitting.initial_guess.blade import arranged_blades
-from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
+from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, can_be_built, searched
 from bladewright.fitting.model_selection.selection import (
     SEVERAL_POINTS,
     THOROUGH_POINTS,
@@ -90,7 +90,7 @@ def _through_points(task: Task, match: Match, target: MatchTarget) -> tuple[Matc
         outlined = determined(some, found) if target.open else (found, "")
     except (DesignError, FitError):
         return None
-    return outlined if outlined[0].can_be_built else None
+    return outlined if can_be_built(outlined[0].design) else None
 
 
 def _shapes_of(part: Any) -> list[SectionShape]:

@@ -99,7 +99,7 @@ def closed_blades(task: Task, begun: FirstBlade) -> Iterator[tuple[Design, int]]
     if found.maximum > NEAR_EVERYWHERE * found.model.chord:
         # few control points do not follow sections that change much along the span
         samples = structure_of(found.design).samples
-        search = StructureSearch(task=task.thinned(SEVERAL_POINTS), samples=samples, first=found.design)
+        search = StructureSearch(task=task.thinned(SEVERAL_POINTS), samples=samples)
         yield _with_smaller_radii(search.rich(found, MatchTarget(structured=True)).design), RICH_LAW_COUNT
     yield _with_smaller_radii(found.design), LAW_COUNT
     yield begun.design, LAW_COUNT

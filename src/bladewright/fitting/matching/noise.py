@@ -51,9 +51,6 @@ LOCAL_POINTS, LOCAL_OVERLAP = 128, 16
 DEVIATION_OVER_QUARTILE = 1.0 / float(ndtri(5.0 / 8.0))
 """standard deviation of normal noise over the lower quartile of its magnitude, which end faces spoil less than the
 median (design/matching_constants.md)"""
-CORE_NEIGHBOURS = 3
-"""points of the large groups beside a small one to which a step within the noise may lead
-(design/matching_constants.md)"""
 EXACT = 1e-4
 """distance to which exact points are to be met, of the extent of the cloud or of the chord: no point nearer is an
 outlier (design/matching_constants.md)"""
@@ -148,24 +145,12 @@ def _cut_off(
     heights: Reals, level: Reals, beyond: NDArray[np.bool_], largest: int, around: Neighbourhood
 ) -> NDArray[np.bool_]:
     """Whether points (n,) are in a group of at most `largest` that no step within the noise leads to."""
-
-    def steps(start: NDArray[np.intp], end: NDArray[np.intp]) -> NDArray[np.bool_]:
-        allowed = NEIGHBOUR_STEP * np.maximum(level[start], level[end]) + EXACT * around.extent
-        return (np.abs(heights[end] - heights[start]) <= allowed) & ~beyond[start] & ~beyond[end]
-
     index = around.index
-    own = np.broadcast_to(np.arange(len(heights))[:, None], index.shape)
-    linked = steps(own, index)
+    allowed = NEIGHBOUR_STEP * np.maximum(level[:, None], level[index]) + EXACT * around.extent
+    linked = (np.abs(heights[index] - heights[:, None]) <= allowed) & ~beyond[:, None] & ~beyond[index]
     label = groups(linked, index)
     size = np.bincount(label)[label]
-    core = np.flatnonzero(size > largest if np.any(size > largest) else size == size.max())
-    separate = np.setdiff1d(np.arange(len(heights)), core)
-    if len(separate) == 0:
-        return np.zeros(len(heights), dtype=bool)
-    _, near = cKDTree(around.places[core]).query(around.places[separate], k=min(CORE_NEIGHBOURS, len(core)))
-    near = core[near.reshape(len(separate), -1)]
-    reached = np.any(steps(np.broadcast_to(separate[:, None], near.shape), near), axis=1)
-    return ~np.isin(label, label[np.concatenate([core, separate[reached]])])
+    return size <= largest if np.any(size > largest) else size < np.max(size)
 
 
 def crowded_at_edges(outliers: NDArray[np.bool_], footpoints: Footpoints) -> dict[str, NDArray[np.bool_]]:
@@ -226,17 +211,32 @@ def noise_of(
     """The noise estimate of points (n, d) about their footpoints; those `trusted` (n,) are no outliers.
 
     Weights (n,) are inverse variances relative to each other. A point of weight 0 tells nothing of the noise, and is an
-    outlier where it lies further off than every inlier.
+    outlier where it lies further off than every inlier. Of many points some tell the noise, and others are inliers
+    where they are level with one beside them.
     """
     trusted = np.zeros(len(points), dtype=bool) if trusted is None else trusted
     weights = np.ones(len(points)) if weights is None else weights
-    rows = np.flatnonzero(weights > 0.0)
-    if len(rows) == len(points):
-        rows = random_subset(len(points), MOST_POINTS)
+    weighed = np.flatnonzero(weights > 0.0)
+    rows = weighed if len(weighed) < len(points) else random_subset(len(points), MOST_POINTS)
     rows = rows[without_copies(points[rows])]
-    if len(rows) < len(points):
-        return _noise_of_some(points, footpoints, weights, rows, trusted)
-    weights = weights / np.mean(weights)
+    part = footpoints.part(rows)
+    found = _shared_noise(points[rows], part, weights[rows] / np.mean(weights[rows]), trusted[rows])
+    if len(rows) == len(points):
+        return found
+    kept = part.part(found.inliers)
+    if len(weighed) < len(points):
+        inliers = footpoints.distances <= np.max(kept.distances)
+    else:
+        beside = cKDTree(kept.points).query(footpoints.points)[1]
+        level = found.noise * np.sqrt(1.0 + 1.0 / weights)
+        near = EXACT * float(np.max(np.ptp(points, axis=0)))
+        inliers = footpoints.distances - kept.distances[beside] <= OUTLYING_NOISE * level + near
+    inliers[rows] = found.inliers
+    return replace(found, inliers=inliers | trusted)
+
+
+def _shared_noise(points: Reals, footpoints: Footpoints, weights: Reals, trusted: NDArray[np.bool_]) -> NoiseEstimate:
+    """The noise estimate of points (n, d) of positive weights (n,), one on average, by what neighbours share."""
     heights, around = footpoints.heights, neighbourhood_of(points, footpoints)
     inliers = ~_outliers_of(footpoints, weights, around) | trusted
     index = around.index
@@ -274,24 +274,3 @@ def _linear_shares(places: Reals, beside: Reals, normals: Reals) -> Reals:
     offsets = offsets / np.where(size > 0.0, size, 1.0)
     rows = np.concatenate([np.ones((*offsets.shape[:2], 1)), offsets], axis=-1)
     return np.asarray(np.linalg.pinv(rows, rcond=FLAT)[:, 0])
-
-
-def _noise_of_some(
-    points: Reals, footpoints: Footpoints, weights: Reals, rows: NDArray[np.intp], trusted: NDArray[np.bool_]
-) -> NoiseEstimate:
-    """The noise estimate of the points in `rows`, and which of the others are inliers by it.
-
-    Those are level with an inlier beside them, or where they have no weight no further off than every inlier.
-    """
-    part = footpoints.part(rows)
-    found = noise_of(points[rows], part, weights[rows], trusted=trusted[rows])
-    kept = part.part(found.inliers)
-    if not np.all(weights > 0.0):
-        inliers = footpoints.distances <= np.max(kept.distances)
-    else:
-        beside = cKDTree(kept.points).query(footpoints.points)[1]
-        level = found.noise * np.sqrt(1.0 + 1.0 / weights)
-        near = EXACT * float(np.max(np.ptp(points, axis=0)))
-        inliers = footpoints.distances - kept.distances[beside] <= OUTLYING_NOISE * level + near
-    inliers[rows] = found.inliers
-    return replace(found, inliers=inliers | trusted)

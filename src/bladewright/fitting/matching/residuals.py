@@ -179,13 +179,18 @@ class CloudResiduals:
 
     def slopes(self, state: PlacedCloud, paths: Sequence[str]) -> Reals:
         """Derivatives (m, k) by parameters at held footpoints, which move along the surface only."""
-        shape, chord = state.shape, self.model.chord
-        every, edges = np.split(self.model.along(shape, *self.places(state), paths), [-len(self.overhang.u)])
-        blocks = [every]
+        shape, footpoints, near, chord = state.shape, state.footpoints, self.ends.near, self.model.chord
+        edges = self.overhang.edges(shape.sides)
+        beyond = self._of_edge * (self.overhang.excess(edges) > 0.0)
+        directions = [-self.roots[:, None] * footpoints.normals, -(self.roots[:, None] * footpoints.beyond)[near]]
+        directions.append(beyond[:, None] * edges.normals)
+        places = concatenated([footpoints, footpoints.part(near), edges])
+        rates = self.model.along(shape, places, np.concatenate(directions), paths)
+        *blocks, at_edges = np.split(rates, [-len(beyond)])
         for wall in self.ends.walls.values():
             t, normal, _ = state.located(wall)
             blocks.append(-self._of_wall(wall) * np.einsum("nkd,nd->nk", wall.rates(shape, t, paths), normal))
-        return np.concatenate([*blocks, edges]) / chord
+        return np.concatenate([*blocks, at_edges]) / chord
 
     def motion_slopes(self, state: PlacedCloud, rates: Reals) -> Reals:
         """Derivatives (m, k) by the motion of the cloud, whose points move at `rates` (n, d, k)."""
@@ -197,14 +202,6 @@ class CloudResiduals:
             across = self._of_wall(wall) * state.located(wall)[1]
             blocks.append(np.einsum("nd,ndk->nk", across, wall.motion_rates(exact, self.points, rates)))
         return np.concatenate(blocks) / self.model.chord
-
-    def places(self, state: PlacedCloud) -> tuple[Footpoints, Reals]:
-        """The footpoints of points, of those past an end, and of edges, and the directions (n, d) that count."""
-        footpoints, near = state.footpoints, self.ends.near
-        edges = self.overhang.edges(state.shape.sides)
-        directions = [-self.roots[:, None] * footpoints.normals, -(self.roots[:, None] * footpoints.beyond)[near]]
-        directions.append(edges.normals * (self._of_edge * (self.overhang.excess(edges) > 0.0))[:, None])
-        return concatenated([footpoints, footpoints.part(near), edges]), np.concatenate(directions)
 
     def _of_wall(self, wall: WallPoints) -> float:
         """Weight of a wall's places: one where they stand in a row, less where they scatter."""

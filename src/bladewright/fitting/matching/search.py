@@ -5,8 +5,10 @@ search in exact data ends free of it. Knots, outliers and what lies at the ends 
 """
 
 from collections.abc import Callable, Collection, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -14,13 +16,12 @@ from numpy.typing import NDArray
 
 from bladewright.designs import Design
 from bladewright.domain.row import turn_matrix
-from bladewright.errors import DesignError, FitError
+from bladewright.errors import BladewrightError, DesignError, FitError
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.free_parameters import FreeParameters, scales_of
-from bladewright.fitting.matching.best_so_far import BestSoFar
 from bladewright.fitting.matching.blade_ends import FACE_BAND, ROW_BAND, BladeEnds, blade_ends_of, edge_overhang_of
 from bladewright.fitting.matching.footpoints import nearest_footpoints
-from bladewright.fitting.matching.noise import EXACT, NoiseEstimate, doubted_outliers, noise_of
+from bladewright.fitting.matching.noise import EXACT, NoiseEstimate, noise_of
 from bladewright.fitting.matching.residuals import CloudResiduals, MatchProblem, PlacedCloud, regularisation_of
 from bladewright.fitting.models.model import Model, model_of
 from bladewright.numerics.least_squares import FIRST_DAMPING, MIN_REDUCTION, constrained_minimum
@@ -45,6 +46,10 @@ EXACT_MISFIT = 3e-14
 """misfit below which nothing is left to find, of the chord: rounding (design/matching_constants.md)"""
 NATIVE_TOLERANCE_OF_NOISE = 0.1
 """tolerance of the native surfaces in a round, of the noise (design/matching_constants.md)"""
+KEPT_DESIGNS = 3
+"""designs of as many parameters that are kept, as the nearest may not be built (design/matching_constants.md)"""
+REFUSED_MARGIN = 6.0
+"""factor of the margin of edge radii where a match is refused when built (design/matching_constants.md)"""
 EDGE_RADIUS_MARGIN = {2: 2e-6, 3: 2e-5}
 """margin by which the control point that sets an edge's radius is held below the thickness beside it, of the section's
 extent, by dimension: a blade is refused between its stations too (design/matching_constants.md)"""
@@ -57,6 +62,110 @@ EXACT_NOISE = 1e-5
 
 Progress = Callable[[str], None]
 """is handed a few words on what is done"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Match:
+    """A design found for a cloud: where a search ended.
+
+    It does not hold the task, whose best designs so far are matches: only the cyclic collector would free the clouds.
+    """
+
+    design: Design
+    problem: MatchProblem
+    state: PlacedCloud
+    noise_estimate: NoiseEstimate
+    ends: BladeEnds
+    damping: float
+    evaluations: int
+    interrupted: bool = False
+    turn: float = 0.0
+    """angle about x by which the task's points are turned [rad]"""
+    held: frozenset[str] = frozenset()
+    """parameters of the task that are held as the points do not determine them"""
+
+    @property
+    def model(self) -> Model:
+        """The model of the last round."""
+        return self.problem.model
+
+    @property
+    def rows(self) -> NDArray[np.bool_]:
+        """(n,) whether a point takes part as a point of the sides."""
+        return self.noise_estimate.inliers & ~self.ends.on_end_face
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the distances of those points, of the chord."""
+        return float(np.sqrt(np.mean(self.state.footpoints.distances[self.rows] ** 2))) / self.model.chord
+
+    @property
+    def mean_distance(self) -> float:
+        """Mean distance of all points except those on end faces, outliers included [m]."""
+        return float(np.mean(self.state.footpoints.distances[~self.ends.on_end_face]))
+
+    @cached_property
+    def misfit(self) -> float:
+        """Root mean square of all residuals, those of ends, walls and edges included, of the chord."""
+        residuals = self.problem.cloud_residuals.residuals(self.state)
+        return float(np.sqrt(np.sum(residuals**2) / max(1.0, float(np.count_nonzero(self.rows)))))
+
+    @property
+    def maximum(self) -> float:
+        """Largest distance of those points [m]."""
+        return float(np.max(self.state.footpoints.distances[self.rows]))
+
+    @property
+    def has_systematic_misfit(self) -> bool:
+        """Whether the misfit is not noise: neighbours share it, or few points are far off."""
+        estimate = self.noise_estimate
+        return estimate.correlation > NOISE_CORRELATION or self.rms * self.model.chord > FAR_OFF * estimate.noise
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether neighbouring points tell that the cloud has next to no noise."""
+        return self.noise_estimate.noise < EXACT_NOISE * self.model.chord
+
+
+@dataclass(frozen=True, eq=False)
+class BestSoFar:
+    """The nearest matches so far, by their number of parameters, as the last may be interrupted, or cannot be built."""
+
+    found: dict[int, list[Match]] = field(default_factory=dict)
+
+    def note(self, found: Match) -> None:
+        """Keeps the end of a round if few of as many parameters are nearer."""
+        if np.isfinite(found.mean_distance):
+            alike = [*self.found.get(count := len(found.problem.paths), ()), found]
+            self.found[count] = sorted(alike, key=lambda each: each.mean_distance)[:KEPT_DESIGNS]
+
+    def built(
+        self, least_tolerance: float = 0.0, suits: Callable[[Match], bool] = lambda _: True
+    ) -> tuple[Match, Any] | None:
+        """The nearest match that suits and can be built, no finer than a tolerance, and what it builds, or None."""
+        suitable = filter(suits, chain.from_iterable(self.found.values()))
+        for found in sorted(suitable, key=lambda each: each.mean_distance):
+            tolerance = getattr(found.design, "tolerance", None)
+            design = found.design.changed({} if tolerance is None else {"tolerance": max(tolerance, least_tolerance)})
+            with suppress(BladewrightError):
+                return replace(found, design=design), design.build()
+        return None
+
+    def instead_of(self, refused: Match, error: Exception, *, structured: bool) -> tuple[Match, Any, str]:
+        """The same of the family of a match that cannot be built, and a note; raises FitError where there is none.
+
+        It has as many parameters at most, and the same ones where the structure is given (`structured`).
+        """
+        paths = refused.problem.paths
+
+        def suits(found: Match) -> bool:
+            alike = found.problem.paths == paths if structured else len(found.problem.paths) <= len(paths)
+            return alike and isinstance(found.design, type(refused.design))
+
+        found, refusal = self.built(suits=suits), f"the nearest design cannot be built ({error})"
+        if found is None:
+            raise FitError(f"{refusal}; give a start design, or bounds that keep off it") from error
+        return *found, f"{refusal}, and the nearest that can is given"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -119,7 +228,7 @@ class Task:
         """The same task with some parameters held that the points do not determine."""
         return replace(self.without(held), held=self.held | {*held})
 
-    def trusting(self, match: "Match") -> "Task":
+    def trusting(self, match: Match) -> "Task":
         """The same task, in which no point is an outlier that a match of it counts as the blade's."""
         return replace(self, trusted=match.rows)
 
@@ -134,76 +243,6 @@ class Task:
         )
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Match:
-    """A design found for a cloud: where a search ended.
-
-    It does not hold the task, whose best designs so far are matches: only the cyclic collector would free the clouds.
-    """
-
-    design: Design
-    problem: MatchProblem
-    state: PlacedCloud
-    noise_estimate: NoiseEstimate
-    ends: BladeEnds
-    damping: float
-    evaluations: int
-    converged: bool = False
-    """whether the last descent converged"""
-    interrupted: bool = False
-    turn: float = 0.0
-    """angle about x by which the task's points are turned [rad]"""
-    held: frozenset[str] = frozenset()
-    """parameters of the task that are held as the points do not determine them"""
-
-    @property
-    def model(self) -> Model:
-        """The model of the last round."""
-        return self.problem.model
-
-    @property
-    def rows(self) -> NDArray[np.bool_]:
-        """(n,) whether a point takes part as a point of the sides."""
-        return self.noise_estimate.inliers & ~self.ends.on_end_face
-
-    @property
-    def rms(self) -> float:
-        """Root mean square of the distances of those points, of the chord."""
-        return float(np.sqrt(np.mean(self.state.footpoints.distances[self.rows] ** 2))) / self.model.chord
-
-    @property
-    def mean_distance(self) -> float:
-        """Mean distance of all points except those on end faces, outliers included [m]."""
-        return float(np.mean(self.state.footpoints.distances[~self.ends.on_end_face]))
-
-    @cached_property
-    def misfit(self) -> float:
-        """Root mean square of all residuals, those of ends, walls and edges included, of the chord."""
-        residuals = self.problem.cloud_residuals.residuals(self.state)
-        return float(np.sqrt(np.sum(residuals**2) / max(1.0, float(np.count_nonzero(self.rows)))))
-
-    @property
-    def maximum(self) -> float:
-        """Largest distance of those points [m]."""
-        return float(np.max(self.state.footpoints.distances[self.rows]))
-
-    @property
-    def has_systematic_misfit(self) -> bool:
-        """Whether the misfit is not noise: neighbours share it, or few points are far off."""
-        estimate = self.noise_estimate
-        return estimate.correlation > NOISE_CORRELATION or self.rms * self.model.chord > FAR_OFF * estimate.noise
-
-    @property
-    def is_exact(self) -> bool:
-        """Whether neighbouring points tell that the cloud has next to no noise."""
-        return self.noise_estimate.noise < EXACT_NOISE * self.model.chord
-
-    @property
-    def can_be_built(self) -> bool:
-        """Whether `build` takes the design; it may not, though a search does: edge radii need a larger margin."""
-        return can_be_built(self.design)
-
-
 def can_be_built(design: Any) -> bool:
     """Whether `build` does not refuse a design."""
     try:
@@ -211,6 +250,19 @@ def can_be_built(design: Any) -> bool:
     except DesignError:
         return False
     return True
+
+
+def buildable(task: Task, match: Match) -> Match | None:
+    """A match that `build` takes: where it is refused, one whose edge radii are kept further off; None of none."""
+    if can_be_built(match.design):
+        return match
+    # what a match holds stays held
+    further = replace(task, margin_factor=REFUSED_MARGIN, free=FreeParameters(free=match.problem.paths))
+    try:
+        found = searched(further, match.design, noise=match.rms, rounds=1, min_reduction=ROUGH_REDUCTION)
+    except FitError:
+        return None
+    return found if can_be_built(found.design) else None
 
 
 def searched(
@@ -232,7 +284,7 @@ def searched(
     is systematic, the regularisation does not rise, and falls where it is `fading`. Raises FitError where the start has
     no shape, and KeyboardInterrupt after it has noted the best design of a round that was interrupted.
     """
-    found, rounds_without_gain = start if isinstance(start, Match) else evaluated(task, start, noise=noise), 0
+    found = start if isinstance(start, Match) else evaluated(task, start, noise=noise)
     task.best_so_far.note(found)
     for number in range(rounds):
         before = found.misfit
@@ -248,8 +300,7 @@ def searched(
         rms = f"{1e3 * found.rms * found.model.chord:.3g} mm rms, {1e3 * found.maximum:.3g} mm at most"
         task.progress(f"{len(found.problem.paths)} parameters, {rms}")
         ratio = found.misfit / before
-        rounds_without_gain = rounds_without_gain + 1 if ratio**2 > min(settled**2, 1.0 - min_reduction) else 0
-        if number and rounds_without_gain and (found.converged or rounds_without_gain > 1):
+        if number and ratio > settled:
             break
         last = found.rms if noise is None else noise
         noise = found.rms * (max(ratio, 1e-3) if ratio < FAST_RATIO else 1.0)
@@ -333,7 +384,7 @@ def _descended_round(task: Task, match: Match, min_reduction: float) -> Match:
     except KeyboardInterrupt:
         task.best_so_far.note(_moved(match, problem.best))
         raise
-    return replace(_moved(match, descent.z), damping=descent.damping, converged=descent.converged)
+    return replace(_moved(match, descent.z), damping=descent.damping)
 
 
 def _moved(match: Match, z: Reals) -> Match:
@@ -342,18 +393,3 @@ def _moved(match: Match, z: Reals) -> Match:
     state = problem.state(z) or match.state
     evaluations = match.evaluations + problem.evaluations
     return replace(match, design=state.shape.design, state=state, evaluations=evaluations)
-
-
-def without_false_outliers(task: Task, match: Match) -> Match:
-    """A match to those outliers too that may be points of a nose that is not found, where it takes most of them."""
-    inliers, feet, systematic = match.noise_estimate.inliers, match.state.footpoints, match.has_systematic_misfit
-    doubted = doubted_outliers(~inliers & ~match.ends.on_end_face, task.points, feet, systematic=systematic)
-    if not np.any(doubted):
-        return match
-    every = replace(task.part(np.flatnonzero(inliers | doubted)), allow_outliers=False)
-    try:
-        found = searched(every, match.design, noise=match.rms, rounds=QUICK_ROUNDS + 1, min_reduction=ROUGH_REDUCTION)
-        found = evaluated(task, found.design, noise=found.rms)
-    except FitError:
-        return match
-    return match if np.mean(found.noise_estimate.inliers[doubted]) <= 0.5 else found

@@ -24,8 +24,6 @@ Counts = tuple[int, ...]
 """numbers of control points of a law along its directions, or of several curves"""
 MOST_CHORD, MOST_SPAN, MOST_CURVE = 24, 12, 12
 """control points along the chord, along the span and of a meridional curve at most (design/matching_constants.md)"""
-LEAST_SHARE = 0.5
-"""share of a law's smallest control point below which none of the resized law falls (design/matching_constants.md)"""
 COMPARED_PLACES: Reals = np.linspace(0.0, 1.0, 101)
 """parameters at which laws and curves are compared"""
 
@@ -63,15 +61,19 @@ class ResizableLaw(ABC):
         """What is added (k,) to the embedding of numbers with other counts: ends that no number of the law moves."""
         return np.zeros(1)
 
-    def nearest_numbers(self, design: Any, counts: Counts) -> Reals:
-        """Its numbers (k,) with other counts that are nearest to a design's."""
-        own, values = self.counts_of(design), design.parameters()
-        numbers = np.array([values[path] for path in self.paths(design)], dtype=float)
-        return self.embedding(counts, own) @ numbers + self.offset(design, counts, own)
-
-    @abstractmethod
-    def resized(self, design: Any, counts: Counts, stations: Stations | None) -> Any:
+    def resized(self, design: Any, counts: Counts, stations: Stations | None) -> Any:  # noqa: ARG002 - the contract's
         """The value of its field with other counts, or at stations along the span, that is nearest to a design's."""
+        own, values = self.counts_of(design), design.parameters()
+        if counts == own:
+            return value_at(design, self.name)
+        numbers = np.array([values[path] for path in self.paths(design)], dtype=float)
+        return self.with_numbers(
+            design, counts, self.embedding(counts, own) @ numbers + self.offset(design, counts, own)
+        )
+
+    def with_numbers(self, design: Any, counts: Counts, numbers: Reals) -> Any:
+        """The value of its field with other counts, of these numbers (k,); laws that resize themselves need none."""
+        raise NotImplementedError
 
     def stations_of(self, design: Any) -> Stations | None:  # noqa: ARG002 - the contract's
         """The stations at which it is given in a design; their values do not count."""
@@ -166,9 +168,7 @@ class SpanLaw(ResizableLaw):
         same = along == counts[0] and all(len(law_points(law)) == across for law in laws)
         if laws and not same:
             scales = scales_of(design, self.paths(design), 1.0)
-            smallest = min(float(np.min(law_points(law))) for law in laws)
-            low = LEAST_SHARE * smallest if smallest > 0.0 else np.max(scales.low)
-            rows = np.clip(rows, low, np.min(scales.high))
+            rows = np.clip(rows, np.max(scales.low), np.min(scales.high))
         found = tuple(plain_law(row) if stations is None else with_values(stations, row) for row in rows)
         return found[0] if self.row is ONE else found
 
@@ -208,6 +208,12 @@ def _has_sections(design: Any) -> bool:
     return True
 
 
+RICH_CHANNEL = (9, 9, 6, 6)
+"""control points of the edges, of hub and of shroud of a rich structure, which hold cubic curves of 4, 5 and 6
+(design/matching_constants.md)"""
+RICH_CURVE, RICH_SEGMENT = 8, 5
+"""points on an edge curve or a wall of a rich structure, and inner control points of a segment, which hold segments of
+one (design/matching_constants.md)"""
 CHANNEL_CURVES = ("leading_edge", "trailing_edge", "hub", "shroud")
 """the four curves of a channel"""
 FEWEST_ON_WALL = 5
@@ -223,6 +229,9 @@ class ChannelCurves(ResizableLaw):
 
     degree: int
     """highest degree of the curves"""
+    fewest: Counts = (2,) * 4
+    most: Counts = (MOST_CURVE,) * 4
+    rich: Counts = RICH_CHANNEL
     holds_corners: bool = True
     along_span: tuple[int, ...] = (0, 1)
 
@@ -240,10 +249,8 @@ class ChannelCurves(ResizableLaw):
             found[np.ix_(*places)] = _curve_embedding(counts[curve], other[curve], self.degree)
         return np.asarray(np.kron(found, np.eye(2)))
 
-    def resized(self, design: Any, counts: Counts, stations: Stations | None) -> Any:  # noqa: ARG002 - the contract's
-        if counts == self.counts_of(design):
-            return design.channel
-        curves = _split(self.nearest_numbers(design, counts).reshape(-1, 2), counts)
+    def with_numbers(self, design: Any, counts: Counts, numbers: Reals) -> Any:
+        curves = _split(numbers.reshape(-1, 2), counts)
         points = (tuple(Point(*row) for row in rows.tolist()) for rows in curves)
         return replace(design.channel, **dict(zip(CHANNEL_CURVES, points, strict=True)))
 
@@ -280,6 +287,9 @@ class CurvePoints(ResizableLaw):
 
     axes: str
     """coordinates of its points that are free"""
+    fewest: Counts = (2,)
+    most: Counts = (MOST_CURVE,)
+    rich: Counts = (RICH_CURVE,)
     along_span: tuple[int, ...] = (0,)
 
     def counts_of(self, design: Any) -> Counts:
@@ -318,6 +328,8 @@ class WallPoints(CurvePoints):
 
     stations: tuple[float, ...]
     """of its points, fractions of its length"""
+    axes: str = "xr"
+    fewest: Counts = (FEWEST_ON_WALL,)
     holds_corners: bool = True
     along_span: tuple[int, ...] = ()
 
@@ -339,6 +351,8 @@ class SegmentPoints(ResizableLaw):
     """1 on the upper side, -1 on the lower one"""
     held: Counts
     """control points that its joints give at its ends"""
+    most: Counts = (MOST_CHORD,)
+    rich: Counts = (RICH_SEGMENT,)
 
     def counts_of(self, design: Any) -> Counts:
         return (len(value_at(design, self.name).abscissas),)
@@ -366,9 +380,6 @@ class SegmentPoints(ResizableLaw):
         (own, inner), (known, _) = self._basis(*counts), self._basis(*other)
         return np.linalg.lstsq(own[:, inner], known @ ends[1] - own @ ends[0], rcond=None)[0].ravel()
 
-    def resized(self, design: Any, counts: Counts, stations: Stations | None) -> Any:  # noqa: ARG002 - the contract's
-        segment = value_at(design, self.name)
-        if counts == self.counts_of(design):
-            return segment
-        points = self.nearest_numbers(design, counts).reshape(-1, 2)
-        return replace(segment, abscissas=tuple(points[:, 0].tolist()), ordinates=tuple(points[:, 1].tolist()))
+    def with_numbers(self, design: Any, counts: Counts, numbers: Reals) -> Any:  # noqa: ARG002 - the contract's
+        abscissas, ordinates = numbers.reshape(-1, 2).T.tolist()
+        return replace(value_at(design, self.name), abscissas=tuple(abscissas), ordinates=tuple(ordinates))

@@ -4,8 +4,7 @@ What the points do not determine then is held, and a last search takes more poin
 does not reach by itself is tried besides: sharp edges, edges elsewhere, another clustering. A round edge of unknown
 radius and an end of the blade further in make up for each other, so that least squares alone leave the tip of a wedge
 short by several radii. A nose slid along the outline is a minimum of its own. The clustering of a blade's samples is no
-parameter, as no law is: what it could save is predicted from the derivatives of a match, with all parameters refitted
-(variable projection: Golub and Pereyra 1973), and sought where that is much.
+parameter, as no law is: it is sought where a round with another one leaves much less.
 """
 
 from collections.abc import Iterator
@@ -23,21 +22,20 @@ from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import GROSS_DEVIATION, NEAR_EVERYWHERE, MatchTarget, trusted_distance
 from bladewright.fitting.assessment.measurement import undetermined_parameters
 from bladewright.fitting.free_parameters import FreeParameters, corner_radii
-from bladewright.fitting.matching.footpoints import Side, nearest_footpoints
-from bladewright.fitting.matching.residuals import PlacedCloud
+from bladewright.fitting.matching.footpoints import Side
+from bladewright.fitting.matching.noise import doubted_outliers
 from bladewright.fitting.matching.search import (
     QUICK_ROUNDS,
     ROUGH_REDUCTION,
     Match,
     Task,
+    can_be_built,
     evaluated,
     searched,
-    without_false_outliers,
 )
 from bladewright.fitting.model_selection.elimination import reweighted
 from bladewright.fitting.model_selection.structure import Structure, reshaped, structure_of, with_feasible_edges
 from bladewright.fitting.model_selection.structure_search import (
-    ENOUGH,
     NEAR,
     NEAR_RICH,
     StructureSearch,
@@ -96,11 +94,10 @@ def rich_match(task: Task, first: Design, target: MatchTarget, *, like: Structur
         return RichMatch(match=match, first=found, search=None, many=many, note="")
     held = target.parameters is not None and bool(corner_radii(first)) and found.ends.in_rows(found.model.chord)
     several, many = (replace(each, free=replace(each.free, corners=not held)) for each in (several, many))
-    search = StructureSearch(task=several, samples=(like or structure_of(first)).samples, first=found.design)
+    search = StructureSearch(task=several, samples=(like or structure_of(first)).samples)
     if task.dimension == 3 and guessed:
         # laws that need no control points along the span begin as constants
         found = replace(search, task=few.trusting(found), predictions=1).well_predicted(found)
-        search = replace(search, first=found.design)
     near = target.open and found.maximum < NEAR * found.model.chord
     rich = found if near else search.rich(found, target)
     if len(rich.rows) < len(several.points):
@@ -126,14 +123,7 @@ def reduced_match(begun: RichMatch, target: MatchTarget) -> tuple[Match, str]:
         count, asked = len(fitting.problem.paths), target.parameters
         other = "" if count == asked else COUNT_NOTE.format(count, asked)
         return _searched_further(many, fitting), "; ".join(filter(None, (begun.note, other)))
-    last, note = determined(many, search.near_everywhere(rich))
-    limit = trusted_distance(last)
-    lost = last.has_systematic_misfit and last.maximum > limit
-    if lost and evaluated(many, rich.design, noise=rich.rms).maximum <= limit:
-        # what the last search left out or held made it miss what was predicted, which the rich match keeps
-        within, _ = search.within(rich, ENOUGH * rich.model.chord)
-        last, note = min((last, note), determined(many, within), key=lambda each: each[0].maximum)
-    return last, note
+    return determined(many, search.near_everywhere(rich))
 
 
 def _within(rich: Match, search: StructureSearch, many: Task, tolerance: float) -> tuple[Match, str]:
@@ -158,7 +148,7 @@ def searched_with_more(task: Task, match: Match, target: MatchTarget) -> Match:
     if target.tolerance is None:
         return _searched_further(more, match)
     found = _reweighted_further(more, match, target.tolerance)
-    return found if found.can_be_built else match
+    return found if can_be_built(found.design) else match
 
 
 def _reweighted_further(task: Task, match: Match, tolerance: float) -> Match:
@@ -175,11 +165,26 @@ def _searched_further(task: Task, match: Match) -> Match:
     try:
         found = searched(task, match.design, noise=match.rms, min_reduction=FINAL_REDUCTION)
         near = max(trusted_distance(match), NEAR_RICH * match.maximum)
-        if found.maximum > near or (not found.can_be_built and match.can_be_built):
+        if found.maximum > near or (not can_be_built(found.design) and can_be_built(match.design)):
             found = evaluated(task, match.design, noise=match.rms)
     except FitError:
         return match
     return found
+
+
+def without_false_outliers(task: Task, match: Match) -> Match:
+    """A match to those outliers too that may be points of a nose that is not found, where it takes most of them."""
+    inliers, feet, systematic = match.noise_estimate.inliers, match.state.footpoints, match.has_systematic_misfit
+    doubted = doubted_outliers(~inliers & ~match.ends.on_end_face, task.points, feet, systematic=systematic)
+    if not np.any(doubted):
+        return match
+    every = replace(task.part(np.flatnonzero(inliers | doubted)), allow_outliers=False)
+    try:
+        found = searched(every, match.design, noise=match.rms, rounds=QUICK_ROUNDS + 1, min_reduction=ROUGH_REDUCTION)
+        found = evaluated(task, found.design, noise=found.rms)
+    except FitError:
+        return match
+    return match if np.mean(found.noise_estimate.inliers[doubted]) <= 0.5 else found
 
 
 def determined(task: Task, match: Match) -> tuple[Match, str]:
@@ -198,7 +203,7 @@ def determined(task: Task, match: Match) -> tuple[Match, str]:
 def _of_structure(several: Task, many: Task, found: Match, structure: Structure | None) -> Match:
     """The match of a given structure, from a richer one where it is not found else; of a match's own one by None."""
     if structure is not None:
-        search = StructureSearch(task=several, samples=structure.samples, first=found.design)
+        search = StructureSearch(task=several, samples=structure.samples)
         tried, starts = ([found], []) if structure_of(found.design) == structure else ([], [found])
         if not tried or found.has_systematic_misfit:
             starts.append(search.rich(found, MatchTarget(structured=True)))
@@ -287,56 +292,30 @@ def nearest_from_other_edges(task: Task, match: Match) -> Match:
     return min((match, *from_other_edges(task, match)), key=lambda each: each.mean_distance)
 
 
-WORTH_SEEKING = 0.9
-"""predicted ratio of misfits below which another clustering is sought (design/matching_constants.md)"""
-CLUSTERING_STEP, CLUSTERING_TOLERANCE = 1e-3, 0.03
-"""step of the finite difference, and how closely the clustering is sought (design/matching_constants.md)"""
+PROBED_CLUSTERING, WORTH_SEEKING = 0.5, 0.6
+"""clustering that is tried first, and ratio of the misfit that a round leaves with it to a match's own below which the
+nearest clustering is sought (design/matching_constants.md)"""
+CLUSTERING_TOLERANCE = 0.03
+"""how closely the clustering is sought (design/matching_constants.md)"""
 
 
 def nearest_by_clustering(task: Task, match: Match) -> Match:
-    """The match with the clustering that leaves the least misfit, where another one is predicted to leave much less."""
-    design, near = match.design, match.maximum <= NEAR_EVERYWHERE * match.model.chord
-    if near or not isinstance(design, UnifiedBlade) or _predicted_ratio(match, design) > WORTH_SEEKING:
+    """The match with the clustering that leaves the least misfit, where another one leaves much less at once."""
+    if match.maximum <= NEAR_EVERYWHERE * match.model.chord or not isinstance(match.design, UnifiedBlade):
         return match
     best = match
 
-    def misfit(clustering: float) -> float:
+    def misfit(clustering: float, rounds: int = QUICK_ROUNDS + 1) -> float:
         nonlocal best
         try:
             start = with_feasible_edges(best.design.changed({"clustering": float(clustering)}))
-            found = searched(task, start, noise=best.rms, rounds=QUICK_ROUNDS + 1, min_reduction=ROUGH_REDUCTION)
+            found = searched(task, start, noise=best.rms, rounds=rounds, min_reduction=ROUGH_REDUCTION)
         except (DesignError, FitError):
-            return 1.0
+            return np.inf
         best = min(best, found, key=lambda each: each.misfit)
         return found.misfit
 
+    if misfit(PROBED_CLUSTERING, 1) > WORTH_SEEKING * match.misfit:
+        return match
     minimize_scalar(misfit, bounds=(0.0, 1.0), method="bounded", options={"xatol": CLUSTERING_TOLERANCE})
     return best
-
-
-def _predicted_ratio(match: Match, design: UnifiedBlade) -> float:
-    """Ratio [-] of the misfit that the nearest clustering is predicted to leave, to a match's own.
-
-    Residuals r (m,) and their rates c (m,) by the clustering, without what the parameters make up for, give the step
-    -c.r / c.c (Golub and Pereyra 1973).
-    """
-    problem, z = match.problem, match.problem.vector(design)
-    values, slopes = problem.values(z), problem.derivatives(z)
-    step = CLUSTERING_STEP if design.clustering < 0.5 else -CLUSTERING_STEP
-    try:
-        shape = match.model.shape(design.changed({"clustering": design.clustering + step}))
-    except DesignError:
-        return 1.0
-    if values is None or slopes is None or not shape.finite:
-        return 1.0
-    cloud = problem.cloud_residuals
-    moved = PlacedCloud(shape=shape, footpoints=nearest_footpoints(cloud.points, shape.sides, match.state.footpoints))
-    own = cloud.residuals(match.state)
-    rates = np.zeros(len(values[0]))
-    rates[: len(own)] = (cloud.residuals(moved) - own) / step
-    basis, _ = np.linalg.qr(slopes[0])  # real: of real residuals
-    rows, rates = (each - basis @ (basis.T @ each) for each in (values[0], rates))
-    if not np.any(rates):
-        return 1.0
-    change = np.clip(-(rates @ rows) / (rates @ rates), -design.clustering, 1.0 - design.clustering)
-    return float(np.sqrt(np.sum((rows + change * rates) ** 2) / np.sum(rows**2)))

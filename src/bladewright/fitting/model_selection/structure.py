@@ -1,6 +1,6 @@
 """How many control points the laws and curves of a design have, apart from their values, and designs with more."""
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import singledispatch
 from itertools import pairwise
@@ -19,7 +19,6 @@ from bladewright.fitting.model_selection.laws import (
     COMPARED_PLACES,
     FEWEST_ON_WALL,
     MOST_CHORD,
-    MOST_CURVE,
     MOST_SPAN,
     ChannelCurves,
     Counts,
@@ -59,16 +58,10 @@ RICH_CHORDWISE = {2: 24, 3: 9}
 and 6 (design/matching.md)"""
 RICH_SPAN = {"thickness": 6, "radius": 4, "": 9}
 """control points along the span of its laws, by what their names say: six hold cubic laws of 4, nine of 4, 5 and 6."""
-RICH_CHANNEL = (9, 9, 6, 6)
-"""control points of the edges, of hub and of shroud, which hold cubic curves likewise (design/matching_constants.md)"""
 RICH_SECTION = {2: 12, 3: 8}
 """control points along the chord of a rich structure of sections of other families, by dimension"""
 RICH_SECTION_SPAN = 5
 """control points along the span of their laws (design/matching_constants.md)"""
-RICH_CURVE = 8
-"""points on an edge curve or a wall of a rich structure (design/matching_constants.md)"""
-RICH_SEGMENT = 5
-"""inner control points of a segment in a rich structure: they hold segments of one (design/matching_constants.md)"""
 
 
 @singledispatch
@@ -128,25 +121,20 @@ def resizable_curves(design: Any) -> list[ResizableLaw]:  # noqa: ARG001 - most 
 
 @resizable_curves.register
 def _(design: UnifiedBlade) -> list[ResizableLaw]:
-    fewest, most = (2,) * 4, (MOST_CURVE,) * 4
-    return [ChannelCurves(name="channel", fewest=fewest, most=most, rich=RICH_CHANNEL, degree=design.channel.degree)]
+    return [ChannelCurves(name="channel", degree=design.channel.degree)]
 
 
 @resizable_curves.register
 def _(design: SectionedBlade) -> list[ResizableLaw]:
-    found, most, rich = list[ResizableLaw](), (MOST_CURVE,), (RICH_CURVE,)
+    found = list[ResizableLaw]()
     for edge in EDGES:
         if isinstance(getattr(design, edge), ThroughPoints):
-            axes = "x" if sliding_coordinate(design, edge) == "r" else "r"
-            found.append(CurvePoints(name=edge, fewest=(2,), most=most, rich=rich, axes=axes))
+            found.append(CurvePoints(name=edge, axes="x" if sliding_coordinate(design, edge) == "r" else "r"))
     for wall in WALLS:
         curve = getattr(design.flow_path, wall)
         if isinstance(curve, ThroughPoints) and len(curve.points) >= FEWEST_ON_WALL:
             way = cumulative_length(np.real(np.array(curve.points)))
-            name = f"flow_path.{wall}"
-            fewest = (FEWEST_ON_WALL,)
-            stations = tuple((way / way[-1]).tolist())
-            found.append(WallPoints(name=name, fewest=fewest, most=most, rich=rich, axes="xr", stations=stations))
+            found.append(WallPoints(name=f"flow_path.{wall}", stations=tuple((way / way[-1]).tolist())))
     return found
 
 
@@ -155,7 +143,6 @@ def _(design: SegmentedSection) -> list[ResizableLaw]:
     """The inner control points of the segments, but for those whose skin morphs."""
     found = list[ResizableLaw]()
     part = design.section
-    most, rich = (MOST_CHORD,), (RICH_SEGMENT,)
     for sign, side in ((1.0, "upper"), (-1.0, "lower")):
         given = getattr(part, side)
         joints = [0 if part.nose is None else part.nose.continuity, given.front_joint.continuity]
@@ -164,7 +151,7 @@ def _(design: SegmentedSection) -> list[ResizableLaw]:
             if getattr(given, segment).skin is None:
                 name, held = f"section.{side}.{segment}", (1 + front, 1 + rear)
                 fewest = (max(1, DEGREE + 1 - sum(held)),)
-                found.append(SegmentPoints(name=name, fewest=fewest, most=most, rich=rich, sign=sign, held=held))
+                found.append(SegmentPoints(name=name, fewest=fewest, sign=sign, held=held))
     return found
 
 
@@ -269,23 +256,6 @@ FIRST_BLADE = Structure(
 """of a twisted and swept blade, with which a match begins (design/matching_constants.md)"""
 
 
-def _with_each(structure: Structure, laws: Iterable[ResizableLaw], count: Callable[..., int]) -> Structure:
-    """The structure with `count` control points of laws, by the law, which of its numbers it is, and that number."""
-    counts = {law.name: tuple(count(law, i, n) for i, n in enumerate(structure.counts[law.name])) for law in laws}
-    return replace(structure, counts={**structure.counts, **counts})
-
-
-def richest(design: Design, *, sampled: bool = False) -> Structure:
-    """The structure with all the control points to begin with, but for those that samples leave open (`sampled`)."""
-    own = structure_of(design)
-
-    def rich(law: ResizableLaw, place: int, count: int) -> int:
-        most = _determined(own, law, place) if sampled else law.most[place]
-        return max(count, min(law.rich[place], most))
-
-    return _with_each(own, resizable_laws(design), rich)
-
-
 def _determined(own: Structure, law: ResizableLaw, place: int) -> int:
     """The most control points of a law that a structure's samples determine, where it is sampled."""
     sampled = own.samples and law.name in THICKNESSES and place == 0
@@ -340,9 +310,16 @@ def rich_structure(
 ) -> Structure:
     """A structure with more control points in every law than a match of so many points is likely to need.
 
-    Along the span it has no more of them than `rows` of points. Laws of which nothing is `free` keep theirs.
+    Along the span it has no more of them than `rows` of points, and along the chord, where it is `sampled`, no more
+    than the design's samples determine. Laws of which nothing is `free` keep theirs.
     """
-    return _towards(richest(design, sampled=sampled), design, free, points, rows)
+    own = structure_of(design)
+
+    def rich(law: ResizableLaw, place: int, count: int) -> int:
+        most = _determined(own, law, place) if sampled else law.most[place]
+        return max(count, min(law.rich[place], most))
+
+    return _grown(design, rich, free, points, rows)
 
 
 def wider_structure(
@@ -355,32 +332,34 @@ def wider_structure(
     not need, half as many again and no more.
     """
     own = structure_of(design)
-    least, share = (own, 2) if slim else (richest(design), 3)
 
     def wider(law: ResizableLaw, place: int, count: int) -> int:
         determined = _determined(own, law, place)
         most = determined if count < determined else law.most[place]
-        return max(least.counts[law.name][place], min(count + max(1, count // share), most))
+        least = count if slim else max(count, min(law.rich[place], law.most[place]))
+        return max(least, min(count + max(1, count // (2 if slim else 3)), most))
 
-    return _towards(_with_each(own, resizable_laws(design), wider), design, free, points, rows)
+    return _grown(design, wider, free, points, rows)
 
 
-def _towards(whole: Structure, design: Design, free: Collection[str], points: int, rows: int) -> Structure:
-    """A structure with more control points than a design's own, or as large a share of them as the points allow."""
+def _grown(
+    design: Design, aim: Callable[[ResizableLaw, int, int], int], free: Collection[str], points: int, rows: int
+) -> Structure:
+    """A structure with as many control points as `aim` says of each law, place and count, as far as points allow."""
+    own, laws = structure_of(design), resizable_laws(design)
+    freed = {law.name for law in laws if not set(free).isdisjoint(law.paths(design) or free)}
 
-    def within_rows(law: ResizableLaw, place: int, count: int) -> int:
-        # along the span it has no more of them than rows, but the fewest that its laws may have
-        return max(min(count, rows), law.fewest[place]) if place in law.along_span else count
+    def grown(law: ResizableLaw, place: int, count: int, share: float) -> int:
+        aimed = aim(law, place, count)
+        if place in law.along_span:
+            # no more of them than rows, but the fewest that a law may have
+            most = max(rows, law.fewest[place])
+            count, aimed = min(count, most), min(aimed, most)
+        return count + round(share * (aimed - count)) if law.name in freed else count
 
-    laws = resizable_laws(design)
-    whole, own = (_with_each(each, laws, within_rows) for each in (whole, structure_of(design)))
-    freed = [law for law in laws if not set(free).isdisjoint(law.paths(design) or free)]
     for share in SHARES:
-
-        def towards(law: ResizableLaw, place: int, count: int, share: float = share) -> int:
-            return count + round(share * (whole.counts[law.name][place] - count))
-
-        rich = _with_each(own, freed, towards).with_samples(own.samples)
+        counts = {law.name: tuple(grown(law, *each, share) for each in enumerate(own.counts[law.name])) for law in laws}
+        rich = replace(own, counts={**own.counts, **counts}).with_samples(own.samples)
         if len(reshaped(design, rich).parameters()) * POINTS_PER_PARAMETER <= points:
             break
     return rich

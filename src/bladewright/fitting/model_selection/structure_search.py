@@ -17,7 +17,16 @@ from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import NEAR_EVERYWHERE, MatchTarget, trusted_distance
 from bladewright.fitting.matching.footpoints import Footpoints, part_of
 from bladewright.fitting.matching.noise import EXACT
-from bladewright.fitting.matching.search import QUICK_ROUNDS, ROUGH_REDUCTION, Match, Task, evaluated, searched
+from bladewright.fitting.matching.search import (
+    QUICK_ROUNDS,
+    ROUGH_REDUCTION,
+    Match,
+    Task,
+    buildable,
+    can_be_built,
+    evaluated,
+    searched,
+)
 from bladewright.fitting.model_selection.elimination import (
     LARGEST_PREDICTED,
     PREDICTED,
@@ -36,8 +45,6 @@ from bladewright.fitting.model_selection.structure import (
 )
 from bladewright.nurbs.basis import Reals
 
-REFUSED_MARGIN = 6.0
-"""factor of the margin of edge radii where a match is refused when built (design/matching_constants.md)"""
 NOISE_REASON = "what is left is the cloud's own noise, {:.2g} mm: more control points would follow it"
 TRIED_PARAMETERS, MOST_TRIED = 100, 4
 """parameters of the structures of one size that are searched, in all, as predictions are linear; and structures at most
@@ -72,8 +79,6 @@ class StructureSearch:
     task: Task
     samples: int
     """along the chord at least"""
-    first: Design
-    """what searches begin from where predictions have no shape"""
     predictions: int = MOST_PREDICTIONS
     """matches about which structures are predicted at most"""
 
@@ -130,25 +135,12 @@ class StructureSearch:
         for _ in range(STAGES):
             model = self._model(self._widened(best, rounds=self.task.dimension - 2) if best else rich)
             searches = (self._searched(model, each) for each in best_of_size(model, most)[:MOST_TRIED])
-            built = (each for found in searches if found and (each := self._built(found)))
+            built = (each for found in searches if found and (each := buildable(self.task, found)))
             fresh = min(islice(built, max(1, TRIED_PARAMETERS // most)), key=lambda each: each.misfit, default=None)
             if fresh is None or (best is not None and fresh.misfit >= best.misfit):
                 break
             best = fresh
         return best or rich
-
-    def _built(self, match: Match) -> Match | None:
-        """A match that can be built: where it is refused, one whose edge radii are kept further from what is."""
-        if match.can_be_built:
-            return match
-        roots = match.problem.cloud_residuals.roots
-        weights = np.where(roots > 0.0, roots**2, self.task.weights)
-        task = replace(self.task, margin_factor=REFUSED_MARGIN * self.task.margin_factor, weights=weights)
-        try:
-            found = searched(task, match.design, noise=match.rms, rounds=1, min_reduction=ROUGH_REDUCTION)
-        except FitError:
-            return None
-        return found if found.can_be_built else None
 
     def well_predicted(self, rich: Match) -> Match:
         """The match of fewest parameters that is at the cloud's noise, or where its misfit is none, near everywhere."""
@@ -191,7 +183,7 @@ class StructureSearch:
         if not found.has_systematic_misfit or found.maximum <= enough or rich.maximum > limit:
             return found
         nearer, _ = self.within(rich, limit)
-        return nearer if nearer.maximum < found.maximum and nearer.can_be_built else found
+        return nearer if nearer.maximum < found.maximum and can_be_built(nearer.design) else found
 
     def within(self, rich: Match, tolerance: float) -> tuple[Match, str]:
         """The match of fewest parameters found that keeps a tolerance [m]; the nearest, and why, where none does."""
@@ -207,7 +199,7 @@ class StructureSearch:
         def kept(match: Match) -> bool:
             return match.maximum <= tolerance
 
-        found, nearest = rich if kept(rich) and rich.can_be_built else None, None
+        found, nearest = rich if kept(rich) and can_be_built(rich.design) else None, None
         if kept(rich) or rich.has_systematic_misfit:
             found, nearest = self._fewest(
                 rich, found, rounds=1, predicted=predicted, search=reweighted_search, kept=kept
@@ -247,7 +239,7 @@ class StructureSearch:
             if promising:
                 chosen = promising[-1 if narrowest else len(promising) // 2]
                 fresh = search(model, chosen)
-                match = fresh and self._built(fresh)
+                match = fresh and buildable(self.task, fresh)
                 enough = match is not None and kept(match)
                 if predictions and not enough:
                     failed = chosen.parameters
@@ -291,34 +283,27 @@ class StructureSearch:
         return None
 
     def _start(self, model: LinearModel, prediction: Prediction) -> Match | None:
-        """The predicted design, that nearest to the rich match, or the first in its structure if none has a shape."""
-        designs = (
-            partial(model.designed, prediction),
-            partial(model.designed, replace(prediction, change=np.zeros_like(prediction.change))),
-            partial(reshaped, self.first, model.structured(prediction.counts)),
-        )
+        """The predicted design, or that nearest to the rich match where it is nearer or none has a shape else."""
         found: list[Match] = []
-        for design in designs:
+        for change in (prediction.change, np.zeros_like(prediction.change)):
             # predictions that go too far are no nearer than the rich match
-            if found and (design is designs[-1] or found[0].misfit < LARGEST_PREDICTED * prediction.rms):
+            if found and found[0].misfit < LARGEST_PREDICTED * prediction.rms:
                 break
             with suppress(DesignError, FitError):
-                found.append(evaluated(self.task, design(), noise=prediction.rms))
+                design = model.designed(replace(prediction, change=change))
+                found.append(evaluated(self.task, design, noise=prediction.rms))
         return min(found, key=lambda each: each.misfit, default=None)
 
 
 REWEIGHTED_SEARCHES = 6
 """searches of one structure with other weights at most (design/matching_constants.md)"""
-TOUCHED = 0.05
-"""largest excess over the tolerance, as a share of it, that the last of these searches is foreseen to have; where it is
-more, they end (design/matching_constants.md)"""
 
 
 def nearest_to_tolerance(task: Task, start: Match, weights: Reals, tolerance: float) -> Match:
     """The match nearest to a tolerance [m] of searches of one structure, whose weights (n,) rise with the distances."""
     tried, last, before = [start], start, np.inf
     weights = np.where(weights > 0.0, weights, task.weights)
-    for left in reversed(range(REWEIGHTED_SEARCHES)):
+    for _ in range(REWEIGHTED_SEARCHES):
         weighted = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
         try:
             last = searched(weighted, last.design, noise=last.rms, rounds=1, min_reduction=ROUGH_REDUCTION)
@@ -326,8 +311,7 @@ def nearest_to_tolerance(task: Task, start: Match, weights: Reals, tolerance: fl
             break
         tried.append(last)
         excess = last.maximum - tolerance
-        # each reduces it by the same ratio as the one before
-        if excess <= 0.0 or (excess / before) ** left * excess > TOUCHED * tolerance:
+        if not 0.0 < excess < before:
             break
         before, weights = excess, reweighted(weights, last.state.footpoints.distances, tolerance)
     return min(tried, key=lambda each: each.maximum)
