@@ -304,7 +304,7 @@ def test_a_blade_that_is_missed_around_the_axis_is_sought_in_a_cascade_that_begi
         SimpleNamespace(design=SimpleNamespace(arrangement=arrangement), turn=turn)
         for arrangement, turn in (("annular", 0.0), ("linear", UPRIGHT))
     ]
-    monkeypatch.setattr(blades, "arranged_blades", lambda *_, **__: begun)
+    monkeypatch.setattr(blades, "first_blades", lambda *_, **__: begun)
     monkeypatch.setattr(blades, "first_of_family", first)
     monkeypatch.setattr(blades, "misfits", lambda trials: trials)
     monkeypatch.setattr(blades, "_rich", rich)
@@ -324,7 +324,7 @@ def test_where_no_first_blade_has_a_shape_the_first_refusal_is_told(monkeypatch)
     def refused(_task, begun, _kind, _like, _header):
         raise FitError(f"refused as {begun.design}")
 
-    monkeypatch.setattr(blades, "arranged_blades", lambda *_, **__: begun)
+    monkeypatch.setattr(blades, "first_blades", lambda *_, **__: begun)
     monkeypatch.setattr(blades, "first_of_family", refused)
     task = Task(points=cloud(), weights=np.ones(len(cloud())), free=FreeParameters(), bounds={})
     header = DesignHeader(name="vane", length_unit="mm")

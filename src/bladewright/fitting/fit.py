@@ -263,10 +263,11 @@ def _matched(
     """The match of a family, what it builds, and why it ends where no target is met."""
     task, start = here.shown.part(_rows_searched(here.shown.points)), here.start
     if kind is None:
-        return matched_unified(task, start, like, header, target)
-    first = None if start is None else task.free.applied(start)
-    matched = matched_section if task.dimension == 2 else matched_blade
-    found, reason = matched(task, kind, first, like, header, target)
+        found, reason = matched_unified(task, start, like, header, target)
+    else:
+        first = None if start is None else task.free.applied(start)
+        matched = matched_section if task.dimension == 2 else matched_blade
+        found, reason = matched(task, kind, first, like, header, target)
     try:
         return found, found.design.build(), reason
     except DesignError as error:

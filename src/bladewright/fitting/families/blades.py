@@ -13,7 +13,7 @@ from bladewright.fitting.families.first_parts import through_points
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
 from bladewright.fitting.families.sections import PROMISING, criterion, inliers_of, is_far, misfits
 from bladewright.fitting.free_parameters import check_bounds
-from bladewright.fitting.initial_guess.blade import arranged_blades
+from bladewright.fitting.initial_guess.blade import first_blades
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
 from bladewright.fitting.model_selection.selection import (
     SEVERAL_POINTS,
@@ -42,7 +42,7 @@ def matched_blade(
     # how near a number of parameters comes does not tell arrangements apart, a rich match does
     asked = replace(target, parameters=None)
     few = task.thinned(THOROUGH_POINTS).points
-    begun_with = [None] if start is not None else arranged_blades(few, header.known(like))
+    begun_with = [None] if start is not None else first_blades(few, header.known(like))
     for begun in begun_with:
         there, first = task, start
         try:

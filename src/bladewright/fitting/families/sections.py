@@ -62,7 +62,7 @@ def matched_section(
     else:
         # its segments are laid on the section one by one, which must be as near as a match
         free = replace(task, free=FreeParameters(), bounds={})
-        shape = section_shape(matched_unified(free, None, None, header, MatchTarget())[1])
+        shape = section_shape(matched_unified(free, None, None, header, MatchTarget())[0].design.build())
     part = None if like is None else like.section
     tried = compared(task.thinned(TRIAL_POINTS), first_designs(kind, shape, part, header, task))
     structure = None if like is None else structure_of(like)
