@@ -23,14 +23,11 @@ WHOLE |= {"NEAR_PLACES", "BORDER_POINTS"}
 
 
 def machines():
-    """The points of every cloud, x, r and theta, and which of them a first guess slices."""
+    """The points of every cloud, and which of them a first guess slices."""
     found = {name: clouds.measured(name).points for name in MEASURED}
     found |= {name: clouds.cloud_of(clouds.example(name)).points for name in EXAMPLES}
     found |= {name: SHAPES[name]().points(np.random.default_rng(11)) for name in FOREIGN}
-    return {
-        name: (channel.machine_coordinates(points, "annular"), even_subset(points, blade.DRAWN_POINTS))
-        for name, points in found.items()
-    }
+    return {name: (points, even_subset(points, blade.DRAWN_POINTS)) for name, points in found.items()}
 
 
 def numbers(module):
@@ -46,9 +43,9 @@ def numbers(module):
 def distances(of):
     """Mean distances from the best slices, of the chord; infinite where there are none."""
     found = []
-    for machine, rows in of.values():
+    for points, rows in of.values():
         try:
-            found.append(channel.ranked_channels(machine, rows, revolved=True)[0].mean_distance)
+            found.append(channel.ranked_channels(points, rows, "annular")[0].mean_distance)
         except (BladewrightError, ArithmeticError, ValueError, IndexError, np.linalg.LinAlgError):
             found.append(np.inf)
     return np.array(found)

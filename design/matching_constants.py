@@ -235,7 +235,7 @@ def guessed(name):
 
     from bladewright.errors import BladewrightError
     from bladewright.fitting.families.kinds import DesignHeader
-    from bladewright.fitting.initial_guess.blade import first_blade
+    from bladewright.fitting.initial_guess.blade import first_blades
 
     if name in SHAPES:
         cloud = clouds.Cloud(points=SHAPES[name]().points(np.random.default_rng(11)))
@@ -243,7 +243,7 @@ def guessed(name):
         cloud = clouds.measured(name) if name[0].isupper() else clouds.cloud_of(clouds.example(name))
     since = time.process_time()
     try:
-        built = first_blade(cloud.points, DesignHeader(name="blade", length_unit="mm").known()).design.build()
+        built = next(first_blades(cloud.points, DesignHeader(name="blade", length_unit="mm").known())).design.build()
     except BladewrightError:
         return {"far": None, "status": "refused", "parameters": None, "seconds": time.process_time() - since}
     seconds = time.process_time() - since

@@ -16,7 +16,7 @@ from bladewright.fitting.families.first_blades import (
 )
 from bladewright.fitting.families.kinds import DesignHeader
 from bladewright.fitting.free_parameters import FreeParameters
-from bladewright.fitting.initial_guess.blade import first_blade
+from bladewright.fitting.initial_guess.blade import first_blades
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.search import Task
 from bladewright.fitting.models.model import model_of, sides_of
@@ -48,7 +48,7 @@ def test_a_blade_that_changes_much_along_its_span_begins_as_a_rich_closed_one() 
     built = blade.build()
     points = np.concatenate([side(*draw.random((2, 1500))) for side in sides_of(built)])
     task = Task(points=points, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
-    begun = first_blade(points, DesignHeader(name="blade", length_unit="mm").known())
+    begun = next(first_blades(points, DesignHeader(name="blade", length_unit="mm").known()))
     (closed, count), *others = closed_blades(task, begun)
     assert [count, *(each for _, each in others)] == [RICH_LAW_COUNT, LAW_COUNT, LAW_COUNT]
     sides = model_of(closed).shape(closed).sides

@@ -12,12 +12,15 @@ from bladewright.errors import FitError
 from bladewright.fitting import free_parameters
 from bladewright.fitting.assessment.acceptance import MatchTarget
 from bladewright.fitting.families import blades, first_blades
-from bladewright.fitting.families.blades import matched_blade
+from bladewright.fitting.families.blades import contours_along, matched_blade
 from bladewright.fitting.families.closed_blade import CONTINUATIONS, ClosedChannel, section_shape, unrolled
-from bladewright.fitting.families.first_blades import LAW_COUNT, part_along_span, part_of_laws, with_mean_laws
-from bladewright.fitting.families.first_parts import through_points
+from bladewright.fitting.families.first_blades import (
+    LAW_COUNT,
+    part_along_span,
+    with_mean_laws,
+)
 from bladewright.fitting.families.kinds import FAMILIES, DesignHeader
-from bladewright.fitting.families.sections import misfits
+from bladewright.fitting.families.sections import CONTOUR_POINTS, misfits
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import FreeParameters, gauge_parameters, scales_of, sliding_coordinate
 from bladewright.fitting.initial_guess.blade import UPRIGHT
@@ -212,9 +215,7 @@ def test_parts_along_the_span_are_the_searched_one_where_shapes_are_alike_and_tu
 
 def test_contours_of_a_profile_that_tapers_keep_its_kind_of_edge_and_its_shape():
     profile = Naca4(stagger_angle=(30.0, 50.0), thickness=(0.12, 0.08), camber=0.04, camber_position=0.4)
-    shapes = blades._shapes_of(profile)
-    parts = [through_points(each, blades.CONTOUR_POINTS) for each in shapes]
-    contours = part_of_laws(parts)
+    contours = contours_along(profile)
     span, s = Span(np.linspace(0.0, 1.0, 5)), np.linspace(0.0, 1.0, 8001)
     own, given = (each.outline(span) for each in (contours, profile))
     assert own.trailing_edge.kind == "sharp"
@@ -223,7 +224,7 @@ def test_contours_of_a_profile_that_tapers_keep_its_kind_of_edge_and_its_shape()
         # a start for a search: a third of the nose's radius
         assert max(off) < 5e-3
     # one coordinate of each point slides it along the contour, and both of the two ends
-    assert len(free_parameters._along_contour(contours)) == LAW_COUNT * (blades.CONTOUR_POINTS + 2)
+    assert len(free_parameters._along_contour(contours)) == LAW_COUNT * (CONTOUR_POINTS[3] + 2)
 
 
 def stood_in(distances, left_out=()):
@@ -304,7 +305,7 @@ def test_a_blade_that_is_missed_around_the_axis_is_sought_in_a_cascade_that_begi
         SimpleNamespace(design=SimpleNamespace(arrangement=arrangement), turn=turn)
         for arrangement, turn in (("annular", 0.0), ("linear", UPRIGHT))
     ]
-    monkeypatch.setattr(blades, "arranged_blades", lambda *_, **__: begun)
+    monkeypatch.setattr(blades, "first_blades", lambda *_, **__: begun)
     monkeypatch.setattr(blades, "first_of_family", first)
     monkeypatch.setattr(blades, "misfits", lambda trials: trials)
     monkeypatch.setattr(blades, "_rich", rich)
@@ -324,7 +325,7 @@ def test_where_no_first_blade_has_a_shape_the_first_refusal_is_told(monkeypatch)
     def refused(_task, begun, _kind, _like, _header):
         raise FitError(f"refused as {begun.design}")
 
-    monkeypatch.setattr(blades, "arranged_blades", lambda *_, **__: begun)
+    monkeypatch.setattr(blades, "first_blades", lambda *_, **__: begun)
     monkeypatch.setattr(blades, "first_of_family", refused)
     task = Task(points=cloud(), weights=np.ones(len(cloud())), free=FreeParameters(), bounds={})
     header = DesignHeader(name="vane", length_unit="mm")

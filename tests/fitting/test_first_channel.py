@@ -12,16 +12,15 @@ from machines import built, example
 
 
 def cloud(name, count=1000):
-    """Points on the sides of an example in x, r and theta."""
+    """Points on the sides of an example."""
     blade, random = built(example(name)), np.random.default_rng(3)
-    return machine_coordinates(
-        np.concatenate([side(*random.random((2, count // 2))) for side in blade.sides]), "annular"
-    ), blade
+    return np.concatenate([side(*random.random((2, count // 2))) for side in blade.sides]), blade
 
 
 @pytest.mark.parametrize("name", ["propeller", "centrifugal-impeller", "compressor-stator", "radial-turbine"])
 def test_the_walls_of_long_short_and_radial_blades_are_told_from_their_edges(name):
-    machine, blade = cloud(name)
+    points, blade = cloud(name)
+    machine = machine_coordinates(points, "annular")
     pieces = corner_sets(alpha_boundary(machine[:, :2]))[0]
     tried = pairings(machine, pieces, revolved=True)
     assert len(tried) == 1
@@ -51,7 +50,7 @@ def test_the_likeliest_channel_follows_the_outline_where_outliers_bend_it():
     off = draw.random(len(points)) < 0.03
     points = points + off[:, None] * draw.uniform(-0.05, 0.05, points.shape) * np.ptp(points)
     points = without_isolated_points(points)
-    found = ranked_channels(machine_coordinates(points, "annular"), even_subset(points, 1200), revolved=True)[0]
+    found = ranked_channels(points, even_subset(points, 1200), "annular")[0]
     true = blade.exact.channel.real()
     for edge in ("leading_edge", "trailing_edge"):
         ends = true.line(edge).values(np.array([0.0, 1.0]))
@@ -65,8 +64,8 @@ def test_the_likeliest_channel_follows_the_outline_where_outliers_bend_it():
 )
 def test_the_corners_of_a_first_channel_stand_where_those_of_the_blade_do(name):
     count = 4000
-    machine, blade = cloud(name, count)
-    found, true = ranked_channels(machine, slice(0, 1200), revolved=True)[0], blade.exact.channel.real()
+    points, blade = cloud(name, count)
+    found, true = ranked_channels(points, np.arange(1200), "annular")[0], blade.exact.channel.real()
     for edge in ("leading_edge", "trailing_edge"):
         ends = true.line(edge).values(np.array([0.0, 1.0]))
         away = np.sqrt(np.sum((found.channel.curves[edge][[0, -1]] - ends) ** 2, axis=-1))

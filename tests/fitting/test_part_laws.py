@@ -14,7 +14,7 @@ from bladewright.fitting.assessment.acceptance import MatchTarget
 from bladewright.fitting.families.closed_blade import section_shape
 from bladewright.fitting.families.first_parts import through_points
 from bladewright.fitting.families.kinds import FAMILIES, DesignHeader
-from bladewright.fitting.families.sections import _through_points, criterion, first_designs
+from bladewright.fitting.families.sections import _design_of, contour_match, criterion, first_designs
 from bladewright.fitting.free_parameters import EDGES, FreeParameters
 from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.model_selection import structure as structures
@@ -147,17 +147,18 @@ def test_an_outline_of_points_follows_what_no_profile_of_a_kind_does():
     shape = section_shape(section(STATOR).build())
     firsts = islice(first_designs(kind, shape, None, header, some), 3)
     found = [searched(some, each, rounds=1) for each in firsts]
-    target = MatchTarget(parameters=26)
-    outline, _ = _through_points(some, kind, found, header, target, found[0])
-    assert len(outline.problem.paths) == 26
+    target = MatchTarget(parameters=34)
+    part = through_points(shape, 32)
+    outline, _ = contour_match(some, found[0], target, lambda: _design_of(kind, shape, part, header, some))
+    assert len(outline.problem.paths) == 34
     assert outline.design.section.kind == "points"
-    # so many points come within two thousandths of the chord
-    assert outline.rms < 2e-3
+    # so many points come within three ten-thousandths of the chord
+    assert outline.rms < 3e-4
     assert min(each.rms for each in found) > 2.0 * outline.rms
     assert criterion(outline, target) < min(criterion(each, target) for each in found)
     # of those that keep a tolerance the one of fewest parameters is the best
     best = min([outline, *found], key=lambda each: criterion(each, MatchTarget(tolerance=1.0)))
-    assert len(best.problem.paths) == min(len(each.problem.paths) for each in found) < 26
+    assert len(best.problem.paths) == min(len(each.problem.paths) for each in found) < 34
 
 
 def test_a_contour_has_points_on_the_corners_of_a_blunt_edge():

@@ -11,24 +11,20 @@ from bladewright.fitting.families.closed_blade import PLACES, SectionShape
 from bladewright.fitting.families.first_blades import SECTION_SPANS, first_of_family, part_of_laws
 from bladewright.fitting.families.first_parts import through_points
 from bladewright.fitting.families.kinds import DesignHeader, FitFamily
-from bladewright.fitting.families.sections import PROMISING, criterion, inliers_of, is_far, misfits
-from bladewright.fitting.free_parameters import check_bounds
-from bladewright.fitting.initial_guess.blade import arranged_blades
-from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, can_be_built, searched
-from bladewright.fitting.model_selection.selection import (
-    SEVERAL_POINTS,
-    THOROUGH_POINTS,
-    RichMatch,
-    determined,
-    reduced_match,
-    rich_match,
+from bladewright.fitting.families.sections import (
+    CONTOUR_POINTS,
+    PROMISING,
+    contour_match,
+    criterion,
+    is_far,
+    misfits,
 )
+from bladewright.fitting.free_parameters import check_bounds
+from bladewright.fitting.initial_guess.blade import first_blades
+from bladewright.fitting.matching.search import Match, Task
+from bladewright.fitting.model_selection.selection import THOROUGH_POINTS, RichMatch, reduced_match, rich_match
 from bladewright.fitting.model_selection.structure import reshaped, structure_of
-from bladewright.fitting.model_selection.structure_search import SETTLED_RICH
 from bladewright.section.laws import Span
-
-CONTOUR_POINTS = 32
-"""points of contours along the chord where no profile is near enough (design/matching.md)"""
 
 
 def matched_blade(
@@ -42,7 +38,7 @@ def matched_blade(
     # how near a number of parameters comes does not tell arrangements apart, a rich match does
     asked = replace(target, parameters=None)
     few = task.thinned(THOROUGH_POINTS).points
-    begun_with = [None] if start is not None else arranged_blades(few, header.known(like))
+    begun_with = [None] if start is not None else first_blades(few, header.known(like))
     for begun in begun_with:
         there, first = task, start
         try:
@@ -65,7 +61,8 @@ def matched_blade(
     found, reason = reduced_match(rich, target)
     misfit = is_far(found, target, NEAR_EVERYWHERE) and found.noise_estimate.correlation > SHARED_VARIANCE
     if kind.has_contours and own and misfit and target.parameters is None:
-        outlined = _through_points(task, found, target)
+        design: Any = found.design
+        outlined = contour_match(task, found, target, lambda: replace(design, section=contours_along(design.section)))
         found, reason = min(filter(None, ((found, reason), outlined)), key=lambda each: criterion(each[0], target))
     return found, "; ".join(filter(None, (reason, "" if own else "hub and shroud are held as they are given")))
 
@@ -79,26 +76,13 @@ def _rich(task: Task, first: Any, like: Any, target: MatchTarget, *, guessed: bo
     return rich_match(task, first, target, like=structure, guessed=guessed)
 
 
-def _through_points(task: Task, match: Match, target: MatchTarget) -> tuple[Match, str] | None:
-    """The match by contours that begin as the sections of another, and its reason; None where it cannot be built."""
-    design: Any = match.design
-    some = inliers_of(task, match, SEVERAL_POINTS)
-    try:
-        parts = [through_points(each, CONTOUR_POINTS) for each in _shapes_of(design.section)]
-        first = replace(design, section=part_of_laws(parts))
-        found = searched(some, first, min_reduction=ROUGH_REDUCTION, settled=SETTLED_RICH, fading=True)
-        outlined = determined(some, found) if target.open else (found, "")
-    except (DesignError, FitError):
-        return None
-    return outlined if can_be_built(outlined[0].design) else None
-
-
-def _shapes_of(part: Any) -> list[SectionShape]:
-    """The shapes of a part's sections at SECTION_SPANS, apart from where they stand."""
+def contours_along(part: Any) -> Any:
+    """Contours through points of a part's sections along the span, apart from where they stand."""
     span = Span(SECTION_SPANS)
     upper, lower = (np.real(side) for side in part.outline(span).points(PLACES))
     turns = np.broadcast_to(np.real(part.stagger(span)), len(SECTION_SPANS))
-    return [
-        SectionShape(chord=1.0, stagger=float(turn), start=np.zeros(2), upper=u, lower=v, edge_radii=(0.0, 0.0))
-        for turn, u, v in zip(turns, upper, lower, strict=True)
+    shapes = [
+        SectionShape(chord=1.0, stagger=float(turn), start=np.zeros(2), upper=u, lower=w, edge_radii=(0.0, 0.0))
+        for turn, u, w in zip(turns, upper, lower, strict=True)
     ]
+    return part_of_laws([through_points(each, CONTOUR_POINTS[3]) for each in shapes])

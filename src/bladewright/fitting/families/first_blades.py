@@ -6,7 +6,7 @@ sections in the middle hardly tell them apart. Laws along the span are taken fro
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import chain, groupby
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -28,7 +28,7 @@ from bladewright.fitting.families.sections import (
 from bladewright.fitting.free_parameters import EDGES, FreeParameters, parameter_range
 from bladewright.fitting.initial_guess.blade import FirstBlade
 from bladewright.fitting.matching.footpoints import nearest_footpoints
-from bladewright.fitting.matching.search import Match, Task, can_be_built, searched
+from bladewright.fitting.matching.search import Match, Task, searched
 from bladewright.fitting.model_selection.selection import GUESS_NOISE, QUICK_POINTS, SEVERAL_POINTS
 from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.fitting.model_selection.structure_search import StructureSearch
@@ -38,7 +38,6 @@ from bladewright.numerics.elementary import turned_left, unit
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import Span, law_basis, law_points, named_laws
-from bladewright.section.unified_limits import RADII
 
 SECTION_SPANS: Reals = np.linspace(0.0, 1.0, 7)
 """places along the span of the sections that laws are taken from"""
@@ -52,8 +51,6 @@ QUICK_ROUNDS = 4
 """rounds of short searches for what a first design is taken from (design/matching_constants.md)"""
 RICH_LAW_COUNT = 6
 """control points of each law of a first blade whose closed one needed a rich structure (design/matching.md)"""
-SMALLER_RADII = (0.8, 0.4, 0.2)
-"""shares of its edge radii with which a closed blade is tried that cannot be built with all (design/matching.md)"""
 ROUNDNESS_PLACE, ROUNDER_RATIO = 0.04, 1.3
 """chord fraction from edges whose half thickness tells the rounder one, and ratio (design/matching_constants.md)"""
 PLANES_ALIKE, IN_DOUBT = 1.5, 1.25
@@ -100,16 +97,9 @@ def closed_blades(task: Task, begun: FirstBlade) -> Iterator[tuple[Design, int]]
         # few control points do not follow sections that change much along the span
         samples = structure_of(found.design).samples
         search = StructureSearch(task=task.thinned(SEVERAL_POINTS), samples=samples)
-        yield _with_smaller_radii(search.rich(found, MatchTarget(structured=True)).design), RICH_LAW_COUNT
-    yield _with_smaller_radii(found.design), LAW_COUNT
+        yield search.rich(found, MatchTarget(structured=True)).design, RICH_LAW_COUNT
+    yield found.design, LAW_COUNT
     yield begun.design, LAW_COUNT
-
-
-def _with_smaller_radii(design: Design) -> Design:
-    """A design with edge radii with which it can be built: between the places that hold them, laws may pass those."""
-    radii = {path: value for path, value in design.parameters().items() if path.startswith(RADII)}
-    smaller = (design.changed({path: share * radii[path] for path in radii}) for share in SMALLER_RADII)
-    return next(filter(can_be_built, chain([design], smaller)), design)
 
 
 def _first(

@@ -1,8 +1,9 @@
 """From points in the plane to a design of a family that is one part."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -19,9 +20,9 @@ from bladewright.fitting.families.unified import first_section, matched_unified
 from bladewright.fitting.free_parameters import FreeParameters, check_bounds
 from bladewright.fitting.matching.noise import OUTLYING_MISFIT
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, can_be_built, searched
-from bladewright.fitting.model_selection.selection import QUICK_POINTS, determined, selected_match
+from bladewright.fitting.model_selection.selection import SEVERAL_POINTS, determined, selected_match
 from bladewright.fitting.model_selection.structure import structure_of
-from bladewright.fitting.model_selection.structure_search import NEAR
+from bladewright.fitting.model_selection.structure_search import NEAR, SETTLED_RICH
 from bladewright.fitting.models.designs import SINGLE_SECTION
 from bladewright.section.checks import UNITS
 
@@ -31,11 +32,10 @@ CONSIDERED, PROMISING = 3, 3.0
 """first designs that are searched on at most, and largest ratio of their misfits to the least (design/matching.md)"""
 EXACT = 1e-9
 """misfit below which matches are alike, of the chord: as near as native curves are (design/matching_constants.md)"""
-OUTLINE_COUNTS = (24, 32, 44)
-"""numbers of points of contours that are tried in turn: searches of more end further off (design/matching.md)"""
+CONTOUR_POINTS = {2: 44, 3: 32}
+"""points of contours along the chord where no profile is near enough, by dimension (design/matching.md)"""
 OUTLINE_DEVIATION = 1e-4
-"""largest distance with which exact points need no contour, and a contour no more points where nothing is asked for,
-of the chord (design/matching_constants.md)"""
+"""largest distance with which exact points need no contour, of the chord (design/matching_constants.md)"""
 BESIDE, BY_CHANCE = 16, 1e-3
 """points beside each other that tell a misfit at an edge, which seldom has more, and probability that noise looks like
 one, by the chi-squared test (Pearson 1900) [-]"""
@@ -70,9 +70,18 @@ def matched_section(
     promising = [each.design for each, miss in zip(tried, off, strict=False) if miss <= PROMISING * off[0]]
     found, reason = nearest(task, promising, target, structure)
     if kind.has_contours and like is None and is_far(found, target):
-        outline, note = _through_points(task, kind, tried, header, target, found)
-        if outline is not None and (criterion(outline, target) < criterion(found, target) or not _is_built(found)):
-            found, reason = outline, note
+        # one coordinate is free of each point but two, and four numbers place the section
+        count = CONTOUR_POINTS[2] if target.parameters is None else target.parameters - 2
+
+        def outlined(closed: Any) -> Design:
+            own = section_shape(closed.build())
+            return _design_of(kind, own, through_points(own, count), header, task)
+
+        # a round edge needs more points to be none of several corners than that of a profile
+        begun = [partial(outlined, each) for each in (closed, found.design)]
+        contours = [contour_match(task, found, target, first) for first in begun]
+        tried_on = filter(None, ((found, reason), *contours))
+        found, reason = min(tried_on, key=lambda each: (not _is_built(each[0]), criterion(each[0], target)))
     return buildable_tolerance(found), reason
 
 
@@ -140,45 +149,19 @@ def is_far(match: Match, target: MatchTarget, open_limit: float | None = None) -
     return (short or (target.parameters is None and match.maximum > limit)) and _has_misfit(match)
 
 
-def _through_points(
-    task: Task, kind: FitFamily, tried: Sequence[Match], header: DesignHeader, target: MatchTarget, profile: Match
-) -> tuple[Match | None, str]:
-    """The match by a contour through as few points as are asked for, and a note of it; None where there is none."""
-    some, found = inliers_of(task, profile, QUICK_POINTS), None
-    profiles: list[Any] = [each.design for each in tried]
-    edges = [each.section.outline(SINGLE_SECTION).trailing_edge.kind for each in profiles]
-    starts = dict(zip(reversed(edges), reversed(tried), strict=True))
-    # one coordinate is free of each point but two, and four numbers place the section
-    for count in OUTLINE_COUNTS if target.parameters is None else (target.parameters - 2,):
-        fresh = {edge: _outlined(some, kind, each, count, header) for edge, each in starts.items()}
-        # few points show an edge
-        best = min(filter(None, fresh.values()), key=_worst_neighbourhood, default=None)
-        if best is None:
-            continue
-        # a round edge may need more points to be none of several corners
-        starts = {edge: starts[edge] if each is None else each for edge, each in fresh.items() if each in (None, best)}
-        found = best if found is None or _worst_neighbourhood(best) < _worst_neighbourhood(found) else found
-        if not is_far(found, target, OUTLINE_DEVIATION):
-            break
-    return determined(some, found) if found is not None and target.open else (found, "")
-
-
-def inliers_of(task: Task, match: Match, most: int) -> Task:
-    """The task with so many of a match's inliers alone: a contour that has not found an edge would leave it out."""
+def contour_match(
+    task: Task, match: Match, target: MatchTarget, first: Callable[[], Design]
+) -> tuple[Match, str] | None:
+    """The match that begins as a design by contours, to another's inliers, and its reason; None where none is built."""
+    # a contour that has not found an edge would leave it out
     inliers = task.thinned(len(match.rows)).part(np.flatnonzero(match.rows))
-    return replace(inliers.thinned(most), allow_outliers=False)
-
-
-def _outlined(task: Task, kind: FitFamily, start: Match, count: int, header: DesignHeader) -> Match | None:
-    """The match by a contour that begins as so many points of another match's; None where it has no shape."""
-    design: Any = start.design
+    some = replace(inliers.thinned(SEVERAL_POINTS), allow_outliers=False)
     try:
-        shape = section_shape(design.build())
-        first = _design_of(kind, shape, through_points(shape, count), header, task)
-        found = searched(task, first, min_reduction=ROUGH_REDUCTION, fading=True)
+        found = searched(some, first(), min_reduction=ROUGH_REDUCTION, settled=SETTLED_RICH, fading=True)
+        outlined = determined(some, found) if target.open else (found, "")
     except (DesignError, FitError):
         return None
-    return found if _is_built(found) else None
+    return outlined if _is_built(outlined[0]) else None
 
 
 def first_designs(

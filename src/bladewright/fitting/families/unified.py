@@ -11,9 +11,9 @@ from bladewright.fitting.assessment.acceptance import AXES_HINT, MatchTarget
 from bladewright.fitting.clouds.thinning import even_subset, without_isolated_points
 from bladewright.fitting.families.kinds import DesignHeader
 from bladewright.fitting.free_parameters import check_bounds
-from bladewright.fitting.initial_guess.blade import first_blade
+from bladewright.fitting.initial_guess.blade import first_blades
 from bladewright.fitting.initial_guess.slices import STEEPEST, PlanePoints, longest_chord, slices_of, unified_numbers
-from bladewright.fitting.matching.search import Match, Task, buildable, searched
+from bladewright.fitting.matching.search import Match, Task, searched
 from bladewright.fitting.model_selection.selection import THOROUGH_POINTS, selected_match
 from bladewright.fitting.model_selection.structure import (
     FIRST_SECTION,
@@ -88,7 +88,7 @@ def matched_unified(
     elif task.dimension == 2:
         guessed = first_section(task.thinned(THOROUGH_POINTS).points, header, wanted or FIRST_SECTION)
     else:
-        begun = first_blade(task.thinned(THOROUGH_POINTS).points, header.known(like))
+        begun = next(first_blades(task.thinned(THOROUGH_POINTS).points, header.known(like)))
         guessed, task = begun.design, replace(task.turned(begun.turn), outline=begun.walls)
     first = task.free.applied(guessed)
     if start is None and first is not guessed:
@@ -96,8 +96,7 @@ def matched_unified(
         first = with_feasible_edges(first)
     check_bounds(first, task.free(first), task.bounds)
     try:
-        found, reason = selected_match(task, first, target, like=wanted, guessed=start is None)
-        return buildable(task, found) or found, reason
+        return selected_match(task, first, target, like=wanted, guessed=start is None)
     except FitError as error:
         if start is not None or not isinstance(guessed, UnifiedBlade):
             raise

@@ -182,14 +182,13 @@ def machine_coordinates(points: Reals, arrangement: str) -> Reals:
     return np.stack([x, np.sqrt(y**2 + z**2), wrapped], axis=-1)
 
 
-def ranked_channels(
-    machine: Reals, rows: NDArray[np.intp] | slice = slice(None), *, revolved: bool
-) -> list[SlicedChannel]:
-    """The channel and slices for each likely choice of walls and edges, the likeliest first.
+def ranked_channels(points: Reals, rows: NDArray[np.intp], arrangement: str) -> list[SlicedChannel]:
+    """The channel and slices of points (n, 3) [m] for each likely choice of walls and edges, the likeliest first.
 
     All points show the outline, and which of its pieces are walls; `rows` of them the slices. The likeliest leaves the
     least product of the slices' distance from the points and the channel's from the outline (design/first_guesses.md).
     """
+    machine, revolved = machine_coordinates(points, arrangement), arrangement == "annular"
     found: list[tuple[float, SlicedChannel]] = []
     boundary = alpha_boundary(machine[:, :2])
     for pieces in corner_sets(boundary):
