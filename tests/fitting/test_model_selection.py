@@ -165,7 +165,7 @@ def test_a_widened_match_comes_nearer_by_a_round():
     for name in THICKNESSES:
         narrow = narrow.resized(name, (3, 1))
     found = searched(task(), reshaped(MADE, narrow), rounds=2)
-    search = StructureSearch(task=task(), samples=0)
+    search = StructureSearch(task=task(), samples=0, first=found.design)
     plain, after = (search._widened(found, rounds) for rounds in (0, 1))
     assert structure_of(plain.design) == structure_of(after.design) != narrow
     assert after.misfit < 0.5 * min(plain.misfit, found.misfit)

@@ -34,7 +34,7 @@ def found_by(monkeypatch):
             count = prediction.parameters
             return None if count in shapeless else match(count, largest(count))
 
-        found, nearest = StructureSearch(task=None, samples=0)._fewest(
+        found, nearest = StructureSearch(task=None, samples=0, first=None)._fewest(
             match(RICH),
             None,
             predicted=lambda about: [
@@ -99,7 +99,7 @@ def test_a_richer_structure_that_is_no_nearer_ends_the_search_for_rich_ones(monk
     monkeypatch.setattr(StructureSearch, "_rows_shown", lambda *_: 1)
     monkeypatch.setattr(StructureSearch, "_without_surplus", lambda _, match, *__: match.design)
     first = SimpleNamespace(rms=1e-3, maximum=1e-1, design=None, model=SimpleNamespace(chord=1.0))
-    found = StructureSearch(task=task, samples=0).rich(first, MatchTarget(tolerance=1e-5))
+    found = StructureSearch(task=task, samples=0, first=None).rich(first, MatchTarget(tolerance=1e-5))
     assert (found is searched[0], len(searched)) == (True, 2)
 
 
@@ -125,7 +125,7 @@ def test_a_rich_structure_keeps_to_its_samples_where_neither_number_nor_structur
     monkeypatch.setattr(StructureSearch, "_rows_shown", lambda *_: 1)
     task = SimpleNamespace(points=range(100), dimension=2, free=lambda _: ())
     first = SimpleNamespace(design=None, model=SimpleNamespace(chord=1.0))
-    assert StructureSearch(task=task, samples=0).rich(first, target) is first
+    assert StructureSearch(task=task, samples=0, first=None).rich(first, target) is first
     assert told == [sampled]
 
 
@@ -144,7 +144,7 @@ def test_a_match_is_sought_again_where_it_is_clearly_further_off_than_the_rich_o
     monkeypatch.setattr(structure_search, "can_be_built", lambda _: True)
     monkeypatch.setattr(StructureSearch, "well_predicted", lambda *_: of["found"])
     monkeypatch.setattr(StructureSearch, "within", lambda *_: (of["nearer"], ""))
-    search = StructureSearch(task=None, samples=0)
+    search = StructureSearch(task=None, samples=0, first=None)
     assert search.near_everywhere(of["rich"]) is of["nearer" if again else "found"]
 
 
@@ -165,7 +165,7 @@ def test_exact_points_that_need_nearly_every_control_point_are_met_nearly(monkey
         "_fewest",
         lambda *_, predicted, **__: (none.extend(predicted(narrow)), offered.extend(predicted(model))),
     )
-    StructureSearch(task=None, samples=0).well_predicted(rich)
+    StructureSearch(task=None, samples=0, first=None).well_predicted(rich)
     assert min(each.parameters for each in offered) == fewest
     # about a narrower match nothing may be predicted to reach the aim
     assert none == []

@@ -96,7 +96,7 @@ def closed_blades(task: Task, begun: FirstBlade) -> Iterator[tuple[Design, int]]
     if found.maximum > NEAR_EVERYWHERE * found.model.chord:
         # few control points do not follow sections that change much along the span
         samples = structure_of(found.design).samples
-        search = StructureSearch(task=task.thinned(SEVERAL_POINTS), samples=samples)
+        search = StructureSearch(task=task.thinned(SEVERAL_POINTS), samples=samples, first=found.design)
         yield search.rich(found, MatchTarget(structured=True)).design, RICH_LAW_COUNT
     yield found.design, LAW_COUNT
     yield begun.design, LAW_COUNT

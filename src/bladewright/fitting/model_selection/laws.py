@@ -24,6 +24,8 @@ Counts = tuple[int, ...]
 """numbers of control points of a law along its directions, or of several curves"""
 MOST_CHORD, MOST_SPAN, MOST_CURVE = 24, 12, 12
 """control points along the chord, along the span and of a meridional curve at most (design/matching_constants.md)"""
+LEAST_SHARE = 0.5
+"""share of a law's smallest control point below which none of the resized law falls (design/matching_constants.md)"""
 COMPARED_PLACES: Reals = np.linspace(0.0, 1.0, 101)
 """parameters at which laws and curves are compared"""
 
@@ -168,7 +170,9 @@ class SpanLaw(ResizableLaw):
         same = along == counts[0] and all(len(law_points(law)) == across for law in laws)
         if laws and not same:
             scales = scales_of(design, self.paths(design), 1.0)
-            rows = np.clip(rows, np.max(scales.low), np.min(scales.high))
+            smallest = min(float(np.min(law_points(law))) for law in laws)
+            low = LEAST_SHARE * smallest if smallest > 0.0 else np.max(scales.low)
+            rows = np.clip(rows, low, np.min(scales.high))
         found = tuple(plain_law(row) if stations is None else with_values(stations, row) for row in rows)
         return found[0] if self.row is ONE else found
 

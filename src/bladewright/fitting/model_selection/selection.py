@@ -36,6 +36,7 @@ from bladewright.fitting.matching.search import (
 from bladewright.fitting.model_selection.elimination import reweighted
 from bladewright.fitting.model_selection.structure import Structure, reshaped, structure_of, with_feasible_edges
 from bladewright.fitting.model_selection.structure_search import (
+    ENOUGH,
     NEAR,
     NEAR_RICH,
     StructureSearch,
@@ -94,10 +95,11 @@ def rich_match(task: Task, first: Design, target: MatchTarget, *, like: Structur
         return RichMatch(match=match, first=found, search=None, many=many, note="")
     held = target.parameters is not None and bool(corner_radii(first)) and found.ends.in_rows(found.model.chord)
     several, many = (replace(each, free=replace(each.free, corners=not held)) for each in (several, many))
-    search = StructureSearch(task=several, samples=(like or structure_of(first)).samples)
+    search = StructureSearch(task=several, samples=(like or structure_of(first)).samples, first=found.design)
     if task.dimension == 3 and guessed:
         # laws that need no control points along the span begin as constants
         found = replace(search, task=few.trusting(found), predictions=1).well_predicted(found)
+        search = replace(search, first=found.design)
     near = target.open and found.maximum < NEAR * found.model.chord
     rich = found if near else search.rich(found, target)
     if len(rich.rows) < len(several.points):
@@ -123,7 +125,14 @@ def reduced_match(begun: RichMatch, target: MatchTarget) -> tuple[Match, str]:
         count, asked = len(fitting.problem.paths), target.parameters
         other = "" if count == asked else COUNT_NOTE.format(count, asked)
         return _searched_further(many, fitting), "; ".join(filter(None, (begun.note, other)))
-    return determined(many, search.near_everywhere(rich))
+    last, note = determined(many, search.near_everywhere(rich))
+    limit = trusted_distance(last)
+    lost = last.has_systematic_misfit and last.maximum > limit
+    if lost and evaluated(many, rich.design, noise=rich.rms).maximum <= limit:
+        # what the last search left out or held made it miss what was predicted, which the rich match keeps
+        within, _ = search.within(rich, ENOUGH * rich.model.chord)
+        last, note = min((last, note), determined(many, within), key=lambda each: each[0].maximum)
+    return last, note
 
 
 def _within(rich: Match, search: StructureSearch, many: Task, tolerance: float) -> tuple[Match, str]:
@@ -203,7 +212,7 @@ def determined(task: Task, match: Match) -> tuple[Match, str]:
 def _of_structure(several: Task, many: Task, found: Match, structure: Structure | None) -> Match:
     """The match of a given structure, from a richer one where it is not found else; of a match's own one by None."""
     if structure is not None:
-        search = StructureSearch(task=several, samples=structure.samples)
+        search = StructureSearch(task=several, samples=structure.samples, first=found.design)
         tried, starts = ([found], []) if structure_of(found.design) == structure else ([], [found])
         if not tried or found.has_systematic_misfit:
             starts.append(search.rich(found, MatchTarget(structured=True)))

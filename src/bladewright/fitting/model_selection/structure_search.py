@@ -79,6 +79,8 @@ class StructureSearch:
     task: Task
     samples: int
     """along the chord at least"""
+    first: Design
+    """what searches begin from where predictions have no shape"""
     predictions: int = MOST_PREDICTIONS
     """matches about which structures are predicted at most"""
 
@@ -283,27 +285,34 @@ class StructureSearch:
         return None
 
     def _start(self, model: LinearModel, prediction: Prediction) -> Match | None:
-        """The predicted design, or that nearest to the rich match where it is nearer or none has a shape else."""
+        """The predicted design, that nearest to the rich match, or the first in its structure if none has a shape."""
+        designs = (
+            partial(model.designed, prediction),
+            partial(model.designed, replace(prediction, change=np.zeros_like(prediction.change))),
+            partial(reshaped, self.first, model.structured(prediction.counts)),
+        )
         found: list[Match] = []
-        for change in (prediction.change, np.zeros_like(prediction.change)):
+        for design in designs:
             # predictions that go too far are no nearer than the rich match
-            if found and found[0].misfit < LARGEST_PREDICTED * prediction.rms:
+            if found and (design is designs[-1] or found[0].misfit < LARGEST_PREDICTED * prediction.rms):
                 break
             with suppress(DesignError, FitError):
-                design = model.designed(replace(prediction, change=change))
-                found.append(evaluated(self.task, design, noise=prediction.rms))
+                found.append(evaluated(self.task, design(), noise=prediction.rms))
         return min(found, key=lambda each: each.misfit, default=None)
 
 
 REWEIGHTED_SEARCHES = 6
 """searches of one structure with other weights at most (design/matching_constants.md)"""
+TOUCHED = 0.05
+"""largest excess over the tolerance, as a share of it, that the last of these searches is foreseen to have; where it is
+more, they end (design/matching_constants.md)"""
 
 
 def nearest_to_tolerance(task: Task, start: Match, weights: Reals, tolerance: float) -> Match:
     """The match nearest to a tolerance [m] of searches of one structure, whose weights (n,) rise with the distances."""
     tried, last, before = [start], start, np.inf
     weights = np.where(weights > 0.0, weights, task.weights)
-    for _ in range(REWEIGHTED_SEARCHES):
+    for left in reversed(range(REWEIGHTED_SEARCHES)):
         weighted = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
         try:
             last = searched(weighted, last.design, noise=last.rms, rounds=1, min_reduction=ROUGH_REDUCTION)
@@ -311,7 +320,8 @@ def nearest_to_tolerance(task: Task, start: Match, weights: Reals, tolerance: fl
             break
         tried.append(last)
         excess = last.maximum - tolerance
-        if not 0.0 < excess < before:
+        # each reduces it by the same ratio as the one before
+        if excess <= 0.0 or (excess / before) ** left * excess > TOUCHED * tolerance:
             break
         before, weights = excess, reweighted(weights, last.state.footpoints.distances, tolerance)
     return min(tried, key=lambda each: each.maximum)
