@@ -301,7 +301,7 @@ def nearest_from_other_edges(task: Task, match: Match) -> Match:
     return min((match, *from_other_edges(task, match)), key=lambda each: each.mean_distance)
 
 
-PROBED_CLUSTERING, WORTH_SEEKING = 0.5, 0.6
+PROBED_CLUSTERING, WORTH_SEEKING = 0.5, 0.9
 """clustering that is tried first, and ratio of the misfit that a round leaves with it to a match's own below which the
 nearest clustering is sought (design/matching_constants.md)"""
 CLUSTERING_TOLERANCE = 0.03
