@@ -1,4 +1,4 @@
-"""The clustering of a blade's samples along the chord, sought where another one leaves much less misfit at once."""
+"""The clustering of a blade's samples along the chord, sought where another one is predicted to leave less misfit."""
 
 from dataclasses import replace
 
@@ -49,6 +49,6 @@ def test_a_match_that_is_near_or_whose_misfit_is_of_another_kind_is_not_searched
     def refused(*_: object, **__: object) -> Match:
         raise AssertionError("searched again")
 
-    monkeypatch.setattr(selection, "minimize_scalar", refused)
+    monkeypatch.setattr(selection, "searched", refused)
     assert nearest_by_clustering(task, near) is near
     assert nearest_by_clustering(turned, far) is far

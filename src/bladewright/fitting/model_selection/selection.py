@@ -4,7 +4,8 @@ What the points do not determine then is held, and a last search takes more poin
 does not reach by itself is tried besides: sharp edges, edges elsewhere, another clustering. A round edge of unknown
 radius and an end of the blade further in make up for each other, so that least squares alone leave the tip of a wedge
 short by several radii. A nose slid along the outline is a minimum of its own. The clustering of a blade's samples is no
-parameter, as no law is: it is sought where a round with another one leaves much less.
+parameter, as no law is: what it could save is predicted from the derivatives of a match, with all parameters refitted
+(variable projection: Golub and Pereyra 1973), and sought where that is much.
 """
 
 from collections.abc import Iterator
@@ -22,8 +23,9 @@ from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import GROSS_DEVIATION, NEAR_EVERYWHERE, MatchTarget, trusted_distance
 from bladewright.fitting.assessment.measurement import undetermined_parameters
 from bladewright.fitting.free_parameters import FreeParameters, corner_radii
-from bladewright.fitting.matching.footpoints import Side
+from bladewright.fitting.matching.footpoints import Side, nearest_footpoints
 from bladewright.fitting.matching.noise import doubted_outliers
+from bladewright.fitting.matching.residuals import PlacedCloud
 from bladewright.fitting.matching.search import (
     QUICK_ROUNDS,
     ROUGH_REDUCTION,
@@ -301,30 +303,56 @@ def nearest_from_other_edges(task: Task, match: Match) -> Match:
     return min((match, *from_other_edges(task, match)), key=lambda each: each.mean_distance)
 
 
-PROBED_CLUSTERING, WORTH_SEEKING = 0.5, 0.9
-"""clustering that is tried first, and ratio of the misfit that a round leaves with it to a match's own below which the
-nearest clustering is sought (design/matching_constants.md)"""
-CLUSTERING_TOLERANCE = 0.03
-"""how closely the clustering is sought (design/matching_constants.md)"""
+WORTH_SEEKING = 0.9
+"""predicted ratio of misfits below which another clustering is sought (design/matching_constants.md)"""
+CLUSTERING_STEP, CLUSTERING_TOLERANCE = 1e-3, 0.03
+"""step of the finite difference, and how closely the clustering is sought (design/matching_constants.md)"""
 
 
 def nearest_by_clustering(task: Task, match: Match) -> Match:
-    """The match with the clustering that leaves the least misfit, where another one leaves much less at once."""
-    if match.maximum <= NEAR_EVERYWHERE * match.model.chord or not isinstance(match.design, UnifiedBlade):
+    """The match with the clustering that leaves the least misfit, where another one is predicted to leave much less."""
+    design, near = match.design, match.maximum <= NEAR_EVERYWHERE * match.model.chord
+    if near or not isinstance(design, UnifiedBlade) or _predicted_ratio(match, design) > WORTH_SEEKING:
         return match
     best = match
 
-    def misfit(clustering: float, rounds: int = QUICK_ROUNDS + 1) -> float:
+    def misfit(clustering: float) -> float:
         nonlocal best
         try:
             start = with_feasible_edges(best.design.changed({"clustering": float(clustering)}))
-            found = searched(task, start, noise=best.rms, rounds=rounds, min_reduction=ROUGH_REDUCTION)
+            found = searched(task, start, noise=best.rms, rounds=QUICK_ROUNDS + 1, min_reduction=ROUGH_REDUCTION)
         except (DesignError, FitError):
-            return np.inf
+            return 1.0
         best = min(best, found, key=lambda each: each.misfit)
         return found.misfit
 
-    if misfit(PROBED_CLUSTERING, 1) > WORTH_SEEKING * match.misfit:
-        return match
     minimize_scalar(misfit, bounds=(0.0, 1.0), method="bounded", options={"xatol": CLUSTERING_TOLERANCE})
     return best
+
+
+def _predicted_ratio(match: Match, design: UnifiedBlade) -> float:
+    """Ratio [-] of the misfit that the nearest clustering is predicted to leave, to a match's own.
+
+    Residuals r (m,) and their rates c (m,) by the clustering, without what the parameters make up for, give the step
+    -c.r / c.c (Golub and Pereyra 1973).
+    """
+    problem, z = match.problem, match.problem.vector(design)
+    values, slopes = problem.values(z), problem.derivatives(z)
+    step = CLUSTERING_STEP if design.clustering < 0.5 else -CLUSTERING_STEP
+    try:
+        shape = match.model.shape(design.changed({"clustering": design.clustering + step}))
+    except DesignError:
+        return 1.0
+    if values is None or slopes is None or not shape.finite:
+        return 1.0
+    cloud = problem.cloud_residuals
+    moved = PlacedCloud(shape=shape, footpoints=nearest_footpoints(cloud.points, shape.sides, match.state.footpoints))
+    own = cloud.residuals(match.state)
+    rates = np.zeros(len(values[0]))
+    rates[: len(own)] = (cloud.residuals(moved) - own) / step
+    basis, _ = np.linalg.qr(slopes[0])  # real: of real residuals
+    rows, rates = (each - basis @ (basis.T @ each) for each in (values[0], rates))
+    if not np.any(rates):
+        return 1.0
+    change = np.clip(-(rates @ rows) / (rates @ rates), -design.clustering, 1.0 - design.clustering)
+    return float(np.sqrt(np.sum((rows + change * rates) ** 2) / np.sum(rows**2)))
