@@ -23,7 +23,6 @@ from bladewright.fitting.model_selection.structure import (
     reshaped,
     resizable_laws,
     rich_structure,
-    richest,
     structure_of,
 )
 from bladewright.fitting.models.designs import PlanarModel, infeasibility
@@ -66,7 +65,7 @@ def test_a_blade_with_more_control_points_along_the_span_is_the_same_blade(desig
 
 def test_where_a_wider_structure_has_no_shape_those_laws_get_wider_that_leave_one(monkeypatch):
     own = structure_of(COMPRESSOR)
-    wide = richest(COMPRESSOR)
+    wide = rich_structure(COMPRESSOR, COMPRESSOR.parameters(), 100_000)
     # a law of the metal angle with more control points takes the shape away
     monkeypatch.setattr(
         structures, "_has_shape", lambda design: structure_of(design).counts["section.metal_angle_in"] == most
@@ -99,7 +98,7 @@ def test_walls_get_points_where_they_are_free_alone():
 
 @pytest.mark.parametrize("design", [ROWS, section(STATOR), EXAMPLES["camber-angle-blunt"].design])
 def test_a_section_with_more_control_points_along_the_chord_is_nearly_the_same(design):
-    wider = reshaped(design, richest(design))
+    wider = reshaped(design, rich_structure(design, design.parameters(), 100_000))
     assert len(FreeParameters()(wider)) > len(FreeParameters()(design))
     before, after = (section_shape(replace(each, tolerance=1e-6).build()) for each in (design, wider))
     for place in np.linspace(0.05, 0.95, 10):
@@ -113,7 +112,7 @@ def test_a_section_with_more_control_points_along_the_chord_is_nearly_the_same(d
 
 def test_segments_with_more_control_points_that_hold_the_old_ones_are_the_same_segments():
     design = example("morphing-airfoil").changed("section.morph", None)
-    wider = reshaped(design, richest(design))
+    wider = reshaped(design, rich_structure(design, design.parameters(), 100_000))
     for law in resizable_laws(design):
         few, many = (np.array([each.parameters()[path] for path in law.paths(each)]) for each in (design, wider))
         assert len(many) > len(few)
