@@ -78,6 +78,8 @@ class Match:
     ends: BladeEnds
     damping: float
     evaluations: int
+    converged: bool = False
+    """whether the last descent converged"""
     interrupted: bool = False
     turn: float = 0.0
     """angle about x by which the task's points are turned [rad]"""
@@ -284,7 +286,7 @@ def searched(
     is systematic, the regularisation does not rise, and falls where it is `fading`. Raises FitError where the start has
     no shape, and KeyboardInterrupt after it has noted the best design of a round that was interrupted.
     """
-    found = start if isinstance(start, Match) else evaluated(task, start, noise=noise)
+    found, rounds_without_gain = start if isinstance(start, Match) else evaluated(task, start, noise=noise), 0
     task.best_so_far.note(found)
     for number in range(rounds):
         before = found.misfit
@@ -300,7 +302,8 @@ def searched(
         rms = f"{1e3 * found.rms * found.model.chord:.3g} mm rms, {1e3 * found.maximum:.3g} mm at most"
         task.progress(f"{len(found.problem.paths)} parameters, {rms}")
         ratio = found.misfit / before
-        if number and ratio > settled:
+        rounds_without_gain = rounds_without_gain + 1 if ratio**2 > min(settled**2, 1.0 - min_reduction) else 0
+        if number and rounds_without_gain and (found.converged or rounds_without_gain > 1):
             break
         last = found.rms if noise is None else noise
         noise = found.rms * (max(ratio, 1e-3) if ratio < FAST_RATIO else 1.0)
@@ -384,7 +387,7 @@ def _descended_round(task: Task, match: Match, min_reduction: float) -> Match:
     except KeyboardInterrupt:
         task.best_so_far.note(_moved(match, problem.best))
         raise
-    return replace(_moved(match, descent.z), damping=descent.damping)
+    return replace(_moved(match, descent.z), damping=descent.damping, converged=descent.converged)
 
 
 def _moved(match: Match, z: Reals) -> Match:
