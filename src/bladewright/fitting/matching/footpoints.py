@@ -22,6 +22,8 @@ DEEP_SHARE, DEEP_EXTENT = 0.25, 1e-5
 at again: beside a thin edge a descent may end on the wrong one (design/matching_constants.md)"""
 STANDING_OUT = 6.0
 """distance of such a point, in usual ones, where it may be an outlier: it is sought globally (design/matching.md)"""
+FACING = 0.999
+"""cosine of the angle from which a normal faces a point, as smooth sides' do (design/matching_constants.md)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -113,6 +115,7 @@ def _facing_corners(footpoints: Footpoints, sides: Sequence[Side]) -> Footpoints
     # the normal of either side there is across the way to the point, so that one ahead of an edge would cost nothing
     way = footpoints.miss - np.sum(footpoints.miss * footpoints.beyond, axis=-1)[:, None] * footpoints.beyond
     size = np.sqrt(np.sum(way**2, axis=-1))
+    corner &= np.abs(np.sum(way * footpoints.normals, axis=-1)) < FACING * size
     normals = np.where(corner[:, None], way / np.where(size > 0.0, size, 1.0)[:, None], footpoints.normals)
     return replace(footpoints, normals=normals)
 
