@@ -43,8 +43,6 @@ class Prediction:
     """(n,) of the points"""
     change: Reals
     """(k,) of the rich structure's scaled parameters"""
-    step: Reals
-    """(j,) of the structure's own, from the nearest of the rich structure's"""
     inverse: Reals
     """(j, j) of the normal equations"""
 
@@ -74,7 +72,8 @@ class FreeLaw:
         """(k,) which of its control points' numbers are free"""
         self.columns = np.array([problem.paths.index(path) for path in paths if path in problem.paths], dtype=int)
         """of the free ones, among the parameters of the match"""
-        self._unit = float(problem.scales.size[self.columns[0]]) if len(self.columns) else 1.0
+        size = problem.scales.size
+        self._unit = float(size[self.columns[0]]) if len(self.columns) else 1.0
         self._values = np.array([float(values[path]) for path in paths]) / self._unit
         # what they give depends on counts only
         self.subspace = cache(self._subspace)
@@ -105,11 +104,13 @@ class LinearModel:
         self.match, self.design, self.samples = match, match.design, samples
         self.structure = structure_of(match.design)
         self.points, self.dimension = match.state.footpoints.points.shape
-        roots = problem.cloud_residuals.roots
-        unweighted = replace(problem.cloud_residuals, roots=np.sign(roots))
-        self.slopes = unweighted.slopes(match.state, problem.paths) * size
-        self.residuals = unweighted.residuals(match.state)
+        self.slopes = problem.cloud_residuals.slopes(match.state, problem.paths) * size
+        self.residuals = problem.cloud_residuals.residuals(match.state)
         """(m,) those of the points first, in chords"""
+        roots = problem.cloud_residuals.roots
+        weighed = np.where(roots > 0.0, roots, np.inf)
+        self.slopes[: self.points] /= weighed[:, None]
+        self.residuals[: self.points] /= weighed
         self._penalty = problem.regularisation.matrix
         self._penalised = problem.regularisation.residuals(problem.vector(match.design))
         laws = [FreeLaw(law, match) for law in resizable_laws(match.design)]
@@ -156,7 +157,6 @@ class LinearModel:
             rows=self.residuals[: self.points] + self.slopes[: self.points] @ change,
             weights=self.weights,
             change=change,
-            step=step,
             inverse=inverse,
         )
 
@@ -167,10 +167,11 @@ class LinearModel:
         """
         found, first = [], len(self._others)
         for i, (free_law, counts) in enumerate(zip(self.laws, prediction.counts, strict=True)):
-            _, nearest, free, _ = free_law.subspace(counts)
-            own = slice(first, first + int(np.count_nonzero(free)))
-            first, values = own.stop, nearest.copy()
-            values[free] += prediction.step[own]
+            part, nearest, free, shift = free_law.subspace(counts)
+            own = slice(first, first + part.shape[1])
+            first = own.stop
+            values = nearest.copy()
+            values[free] += np.linalg.lstsq(part, prediction.change[free_law.columns] - shift, rcond=None)[0]
             for place, count in enumerate(counts):
                 for fewer in range(max(free_law.of.fewest[place], count - LARGEST_STEP), count):
                     smaller = (*counts[:place], fewer, *counts[place + 1 :])
