@@ -51,6 +51,9 @@ LOCAL_POINTS, LOCAL_OVERLAP = 128, 16
 DEVIATION_OVER_QUARTILE = 1.0 / float(ndtri(5.0 / 8.0))
 """standard deviation of normal noise over the lower quartile of its magnitude, which end faces spoil less than the
 median (design/matching_constants.md)"""
+CORE_NEIGHBOURS = 3
+"""points of the large groups beside a small one to which a step within the noise may lead
+(design/matching_constants.md)"""
 EXACT = 1e-4
 """distance to which exact points are to be met, of the extent of the cloud or of the chord: no point nearer is an
 outlier (design/matching_constants.md)"""
@@ -145,12 +148,24 @@ def _cut_off(
     heights: Reals, level: Reals, beyond: NDArray[np.bool_], largest: int, around: Neighbourhood
 ) -> NDArray[np.bool_]:
     """Whether points (n,) are in a group of at most `largest` that no step within the noise leads to."""
+
+    def steps(start: NDArray[np.intp], end: NDArray[np.intp]) -> NDArray[np.bool_]:
+        allowed = NEIGHBOUR_STEP * np.maximum(level[start], level[end]) + EXACT * around.extent
+        return (np.abs(heights[end] - heights[start]) <= allowed) & ~beyond[start] & ~beyond[end]
+
     index = around.index
-    allowed = NEIGHBOUR_STEP * np.maximum(level[:, None], level[index]) + EXACT * around.extent
-    linked = (np.abs(heights[index] - heights[:, None]) <= allowed) & ~beyond[:, None] & ~beyond[index]
+    own = np.broadcast_to(np.arange(len(heights))[:, None], index.shape)
+    linked = steps(own, index)
     label = groups(linked, index)
     size = np.bincount(label)[label]
-    return size <= largest if np.any(size > largest) else size < np.max(size)
+    core = np.flatnonzero(size > largest if np.any(size > largest) else size == size.max())
+    separate = np.setdiff1d(np.arange(len(heights)), core)
+    if len(separate) == 0:
+        return np.zeros(len(heights), dtype=bool)
+    _, near = cKDTree(around.places[core]).query(around.places[separate], k=min(CORE_NEIGHBOURS, len(core)))
+    near = core[near.reshape(len(separate), -1)]
+    reached = np.any(steps(np.broadcast_to(separate[:, None], near.shape), near), axis=1)
+    return ~np.isin(label, label[np.concatenate([core, separate[reached]])])
 
 
 def crowded_at_edges(outliers: NDArray[np.bool_], footpoints: Footpoints) -> dict[str, NDArray[np.bool_]]:
