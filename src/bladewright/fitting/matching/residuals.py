@@ -295,9 +295,9 @@ class MatchProblem(ConstrainedProblem):
         if state is None:
             return None
         try:
-            edges, constraints = self.model.limit_rates(state.shape, self.paths)
+            edges = self.model.edge_radius_margin_rates(state.shape, self.paths)
             over, heights = (edges[:, i].reshape(len(self.paths), -1).T for i in (0, 1))
-            margins = np.concatenate([over, constraints.T])
+            margins = np.concatenate([over, self.model.constraint_rates(state.shape, self.paths).T])
             slopes = self.cloud_residuals.slopes(state, self.paths)
         except DesignError:
             return None

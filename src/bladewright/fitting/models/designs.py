@@ -42,6 +42,7 @@ from bladewright.section.camber import camber_points
 from bladewright.section.camber_angle import CamberAngle
 from bladewright.section.camber_angle_outline import STEEPEST
 from bladewright.section.checks import UNITS
+from bladewright.section.curvature_meanline import CurvatureMeanline
 from bladewright.section.laws import Span
 from bladewright.section.native import interpolated_along_u, side_knots_for
 from bladewright.section.outline import EdgeDerivatives
@@ -126,8 +127,8 @@ class SectionedModel(SpatialModel):
         constraints = np.concatenate([np.real(each) for each in rows])
         return ModelShape(design=design, sides=(upper, lower), exact=exact, constraints=constraints)
 
-    def limit_rates(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
-        """Of the sections' infeasibility, and of how near flow path and edges are to what is refused."""
+    def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
+        """Derivatives of the sections' infeasibility, and of how near flow path and edges are to what is refused."""
         exact, count = shape.exact, len(_flow_path_margins(shape.exact, shape.exact))
 
         def sections(design: Any) -> Array:
@@ -137,8 +138,7 @@ class SectionedModel(SpatialModel):
             return _flow_path_margins(exact, exact.moved_to(design))
 
         own = stepped_rates(shape, paths, "section.", len(shape.constraints) - count, sections)
-        rates = [own, stepped_rates(shape, paths, PLACING[:3], count, flow_path)]
-        return np.zeros((len(paths), *shape.edge_radius_margins.shape)), np.concatenate(rates, axis=1)
+        return np.concatenate([own, stepped_rates(shape, paths, PLACING[:3], count, flow_path)], axis=1)
 
 
 def _flow_path_margins(exact: Any, moved: Any) -> Array:
@@ -177,6 +177,13 @@ def _(part: Segmented, span: Span) -> Array:
 
 
 @infeasibility.register
+def _(part: CurvatureMeanline, span: Span) -> Array:
+    """No margins: a thickness is refused or it is not."""
+    part.thickness.at(span)
+    return np.zeros(0)
+
+
+@infeasibility.register
 def _(part: CamberAngle, span: Span) -> Array:
     steep = [each for each in part.outline(span).bends if each is not None]
     return concatenated(steep, axis=-1) / STEEPEST - (1.0 - STEEP_MARGIN)
@@ -200,6 +207,8 @@ def _opening_excess(part: SuctionPressure, edge: str, span: Span) -> Array:
     return np.stack(np.broadcast_arrays(*ratios), axis=-1) - (MAX_OPENING[part.edges] - OPENING_MARGIN)
 
 
+PLACES_ALONG_SPAN: Reals = np.linspace(0.0, 1.0, 65)
+"""places along the span where edge radii are compared with thickness: five a joint of the longest law"""
 COARSE_SEARCH, KNOT_SLACK = 3.0, 100.0
 """tolerance of a search, of the design's own, from which knots may miss walls and edges by so many times what `build`
 promises: it saves half of the derivatives' time (design/matching.md)"""
@@ -244,6 +253,8 @@ class UnifiedBladeModel(SpatialModel):
         self.chord = mean_chord(exact)
         slack = KNOT_SLACK if self.tolerance > COARSE_SEARCH * design.tolerance else 1.0
         self.knots: Knots = refined_knots(exact, self.chord, slack=slack)
+        self.stations = np.union1d(SURVEY, _narrowest_places(design, exact))
+        """places along the span at which the thickness must hold the edges' radii"""
 
     @WITHOUT_WARNINGS
     def shape(self, design: Any) -> ModelShape:
@@ -252,28 +263,40 @@ class UnifiedBladeModel(SpatialModel):
         return ModelShape(
             design=design,
             sides=(side_surface(upper, self.knots, DEGREE), side_surface(lower, self.knots, DEGREE)),
-            edge_radius_margins=np.real(_surveyed_margins(exact)),
+            edge_radius_margins=np.real(_margins_at(design, exact, self.stations)),
             constraints=np.real(_fold_margins(exact, exact.channel)),
             exact=exact,
         )
 
-    def limit_rates(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
-        """Edge radius margins by the laws only: by the channel they vanish but for the walls' slopes, left out."""
-        design, exact = shape.design, shape.exact
-        margins = np.zeros((len(paths), *shape.edge_radius_margins.shape))
-        own = [place for place, path in enumerate(paths) if not path.startswith("channel.")]
+    def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
+        """By the laws only: by the channel they vanish but for the walls' slopes, which are left out."""
+        found = np.zeros((len(paths), *shape.edge_radius_margins.shape))
+        design, own = shape.design, [place for place, path in enumerate(paths) if not path.startswith("channel.")]
         steps, sources = steps_of(design, [paths[place] for place in own])
-        rates = np.imag(_surveyed_margins(exact.moved_to(stepped_design(design, steps)))) / STEP
-        weights = [step.weights(SURVEY) for step in steps]
+        moved = shape.exact.moved_to(stepped_design(design, steps))
+        rates = np.imag(_margins_at(design, moved, self.stations)) / STEP
+        weights = [step.weights(self.stations) for step in steps]
         for place, (step, number) in zip(own, sources, strict=True):
-            margins[place] = rates[:, step] * weights[step][:, number]
-        return margins, stepped_rates(
-            shape,
-            paths,
-            "channel.",
-            len(shape.constraints),
-            lambda stepped: _fold_margins(exact, exact.moved_to(stepped).channel),
+            found[place] = rates[:, step] * weights[step][:, number]
+        return found
+
+    def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
+        """From one channel with a complex step on each of its parameters in a batch."""
+        exact, count = shape.exact, len(shape.constraints)
+        return stepped_rates(
+            shape, paths, "channel.", count, lambda design: _fold_margins(exact, exact.moved_to(design).channel)
         )
+
+
+def _narrowest_places(design: UnifiedBlade, exact: ExactUnifiedBlade) -> Reals:
+    """Where along the span edge radii come nearest to what the thickness holds, or exceed it most.
+
+    Searches hold the radii there and where the blade is surveyed: the exchange method of semi-infinite constraints
+    (Hettich and Kortanek 1993, section 7), an exchange a round.
+    """
+    excess = np.real(_margins_at(design, exact, PLACES_ALONG_SPAN))[0]
+    higher = np.pad(excess, ((0, 0), (1, 1)), constant_values=-np.inf)
+    return PLACES_ALONG_SPAN[np.any((excess >= higher[:, :-2]) & (excess >= higher[:, 2:]), axis=0)]
 
 
 def _fold_margins(exact: ExactUnifiedBlade, channel: TransfiniteChannel) -> Array:
@@ -282,10 +305,10 @@ def _fold_margins(exact: ExactUnifiedBlade, channel: TransfiniteChannel) -> Arra
     return fold_margins(exact.channel.slopes(u, v), channel.slopes(u, v))
 
 
-def _surveyed_margins(exact: ExactUnifiedBlade) -> Array:
-    """The edge radius margins (2, ..., 4, m) of an exact blade's sections where it is judged before it is built."""
-    plane = exact.survey.plane
-    return _edge_radius_margins(exact.design, plane.camber, plane.upper, plane.lower)
+def _margins_at(design: Any, exact: ExactUnifiedBlade, v: Reals) -> Array:
+    """The edge radius margins (2, ..., 4, m) of an exact blade's sections at v (m,)."""
+    plane = exact.sections(v).plane
+    return _edge_radius_margins(design, plane.camber, plane.upper, plane.lower)
 
 
 def _edge_radius_margins(design: Any, line: Array, upper: Array, lower: Array) -> Array:

@@ -86,9 +86,13 @@ class Model(ABC):
     def along(self, shape: ModelShape, footpoints: Footpoints, directions: Reals, paths: Sequence[str]) -> Reals:
         """Derivatives (n, k) of the footpoints along directions (n, d) by parameters, at held surface parameters."""
 
+    def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
+        """Derivatives (k, ...) of `shape.edge_radius_margins`."""
+        return np.zeros((len(paths), *shape.edge_radius_margins.shape))
+
     @abstractmethod
-    def limit_rates(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
-        """Derivatives (k, 2, ...) of `shape.edge_radius_margins` and (k, c) of `shape.constraints` by parameters."""
+    def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
+        """Derivatives (k, c) of `shape.constraints`."""
 
 
 @singledispatch
@@ -163,9 +167,11 @@ class SectionModel(Model):
     def along(self, shape: ModelShape, footpoints: Footpoints, directions: Reals, paths: Sequence[str]) -> Reals:
         return moved_along(shape.sides, self.rates(shape, paths)[:2], footpoints, directions)
 
-    def limit_rates(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
-        _, _, margins, constraints = self.rates(shape, paths)
-        return margins, constraints
+    def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
+        return self.rates(shape, paths)[2]
+
+    def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
+        return self.rates(shape, paths)[3]
 
     def rates(self, shape: ModelShape, paths: Sequence[str]) -> Sequence[Reals]:
         """Derivatives (k, ...) of all parts by parameters, kept for the next that asks for them."""
