@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -235,10 +236,15 @@ RANGES: tuple[tuple[str, Callable[[float, float], ParameterRange]], ...] = (
 """by names of fields, lengths apart, from a value and the largest magnitude in its field; the first match counts"""
 
 
+@cache
+def _range_rule(name: str) -> Callable[[float, float], ParameterRange] | None:
+    return next((rule for names, rule in RANGES if re.fullmatch(names, name)), None)
+
+
 def parameter_range(of: Part, path: str, value: float, largest: float, chord: float = 1.0) -> ParameterRange:
     """The range of a parameter of a design, of a chord in its own unit, or a part; `largest` magnitude in its field."""
     name, unit = re.sub(r"\[\d+\]|\.values", "", path), unit_at(of, path)
-    rule = None if unit == "length" else next((rule for names, rule in RANGES if re.fullmatch(names, name)), None)
+    rule = None if unit == "length" else _range_rule(name)
     if rule is not None:
         found = rule(value, largest)
     elif unit == "length":

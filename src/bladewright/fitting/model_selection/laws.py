@@ -3,6 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import cache, cached_property
 from typing import Any, final
 
 import numpy as np
@@ -120,8 +121,12 @@ class Row:
             at = np.interp(at, along, at)
         return law_basis(points + first + last, at)[:, first : first + points]
 
-    def embedding(self, count: int, other: int) -> Reals:
-        """Control points of the rows nearest to those of another count."""
+    @cached_property
+    def embedding(self) -> Callable[[int, int], Reals]:
+        """Control points of the rows of a count that are nearest to those of another one."""
+        return cache(self._embedding)
+
+    def _embedding(self, count: int, other: int) -> Reals:
         if count == other:
             return np.eye(self.points(count))
         return np.asarray(np.linalg.lstsq(self.basis(count), self.basis(other), rcond=None)[0])

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
-from functools import singledispatch
+from functools import cache, singledispatch
 from itertools import pairwise
 from typing import Any
 
@@ -72,11 +72,14 @@ def chordwise_rows(part: Any) -> dict[str, Row]:  # noqa: ARG001 - most parts ha
 
 @chordwise_rows.register
 def _(part: UnifiedSection | UnifiedBlade) -> dict[str, Row]:
+    return dict.fromkeys(THICKNESSES, _row_of_thicknesses(part.samples, part.clustering))
+
+
+@cache
+def _row_of_thicknesses(samples: int, clustering: float) -> Row:
     # where the samples of the sides stand, a thickness matters most
-    samples = sample_places(part.samples, part.clustering)[2:-2]
-    compared = np.sort(np.concatenate([samples, COMPARED_PLACES]))
-    row = Row(fewest=FEWEST_THICKNESSES, most=MOST_SAMPLES - SPARE_SAMPLES, compared=compared)
-    return dict.fromkeys(THICKNESSES, row)
+    compared = np.sort(np.concatenate([sample_places(samples, clustering)[2:-2], COMPARED_PLACES]))
+    return Row(fewest=FEWEST_THICKNESSES, most=MOST_SAMPLES - SPARE_SAMPLES, compared=compared)
 
 
 @chordwise_rows.register
