@@ -7,12 +7,10 @@ import pytest
 
 from bladewright.fitting.assessment.acceptance import Acceptance, MatchTarget
 from bladewright.fitting.assessment.measurement import measured, parameter_estimates
-from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
 from machines import COARSE, example
 from machines import built as builds
-from machines.sections import EXAMPLES
 
 STATOR = example("aachen-stator").changed("tolerance", COARSE)
 
@@ -172,9 +170,3 @@ def test_outliers_inside_are_said_once_and_where_they_crowd(low, high, said):
     found = [each for each in said_of(np.concatenate(points), STATOR, MatchTarget()) if " outliers lie " in each]
     assert len(found) == 1
     assert said in found[0]
-
-
-def test_round_edges_are_named_where_a_blunt_one_is_not_met():
-    curves, u = EXAMPLES["naca-6409-blunt"].design.build().curves, (1.0 - np.cos(np.pi * np.linspace(0, 1, 150))) / 2.0
-    found = fit(np.concatenate([np.real(curve(u)) for curve in curves.values()]))
-    assert any("beside the trailing edge, and the edges of this family are round" in each for each in found.notes)

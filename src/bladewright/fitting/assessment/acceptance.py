@@ -183,13 +183,9 @@ class Acceptance:
     @property
     def _not_found(self) -> str:
         rms, noise = self.match.rms * self.match.model.chord, self.match.noise_estimate.noise
-        u, hint = self.measurement.u[self.measurement.worst], ""
-        name, away = min(((name, abs(u - end)) for name, end in EDGE_PARAMETERS.items()), key=lambda each: each[1])
-        if self.match.model.rounded and away < BETWEEN_EDGES:
-            hint = f"; it is farthest off beside the {name}, and the edges of this family are round"
         return (
             f"the shape is not found: deviations go on from point to point, {self._length(rms, 3)} rms where the "
-            f"cloud's own noise is {self._length(noise, 3)}{hint}; state the tolerance that is enough, a number of "
+            f"cloud's own noise is {self._length(noise, 3)}; state the tolerance that is enough, a number of "
             "parameters, or a start"
         )
 
@@ -221,7 +217,7 @@ class Acceptance:
             )
 
     def _parts(self) -> Iterator[Finding]:
-        """Parts of the blade without points: long gaps, edges, a side."""
+        """Parts of the blade without points, long gaps, edges, a side; and edges of another form."""
         given, chord = self.target.structured, self.match.model.chord
         for gap, place in coverage.bare_stretches(self.match):
             cure = "" if given else ": is it a whole blade? Give points there, or a start"
@@ -239,6 +235,12 @@ class Acceptance:
             yield Finding(
                 f"no point lies around the {name}, where the blade is still {self._length(width, 3)} wide, "
                 f"{share:.0%} of its thickest: is it half a blade? Give the points of the whole"
+            )
+        for name, width in coverage.foreign_edges(self.match).items():
+            yield Finding(
+                f"the {name} of the points is cut off, {self._length(width)} wide, and the edges of this family are "
+                "round: it stays within half of that (--family profile has blunt and sharp edges)",
+                fails=False,
             )
         feet, thickness = self.match.state.footpoints, coverage.least_thickness(self.match)
         between = feet.side[self.match.rows & (feet.from_edges > BETWEEN_EDGES)]

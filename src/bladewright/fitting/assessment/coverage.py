@@ -1,15 +1,19 @@
-"""What a cloud shows of a blade: its sides between the points, ends without a row, and bare edges."""
+"""What a cloud shows of a blade: its sides between the points, ends without a row, bare and cut edges."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import ndtri
+from scipy.optimize import least_squares
+from scipy.special import fdtri, ndtri
 
 from bladewright.blade.native.cut_lines import in_meridian
 from bladewright.fitting.assessment.measurement import shape_covariance
 from bladewright.fitting.free_parameters import parameters_of_curve
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS, FACE_BAND, WallPoints
 from bladewright.fitting.matching.footpoints import BETWEEN_EDGES, EDGE_PARAMETERS, Footpoints, footpoints_at, part_of
-from bladewright.fitting.matching.noise import EXACT
+from bladewright.fitting.matching.noise import EXACT, SIGNIFICANCE
 from bladewright.fitting.matching.search import Match
 from bladewright.numerics.elementary import cumulative_length
 from bladewright.numerics.robust import DEVIATION_OVER_MEDIAN
@@ -33,6 +37,13 @@ AT_EDGE = 0.01
 """share of such a gap within which an edge is at its end (design/matching_constants.md)"""
 WAY_SAMPLES = 401
 """places along a side between which it is taken as straight, and where it is thickest (design/matching_constants.md)"""
+REACH = 2.0
+"""how far from the end of an edge points are compared, in widths of the blade at `INSIDE`: sides are straight so far;
+with twice a blunt edge is not seen (tests/fitting/test_foreign_edges.py)"""
+INSIDE = 0.05
+"""distance from an edge, in u, at which the sides show width and direction across it (design/matching_constants.md)"""
+SHARES = (0.9, 0.5, 0.1)
+"""first widths of fitted faces and arcs, of the half height of their points (design/matching_constants.md)"""
 PLACES = {2: (41, 1), 3: (21, 21)}
 """places along each side and the span, by dimension, where it is asked how well the shape is known: they bound time,
 and but for the ends and the middle lie between even rows of points"""
@@ -185,3 +196,80 @@ def least_thickness(match: Match) -> float:
         return np.inf
     u = np.linspace(0.0, 1.0, WAY_SAMPLES)
     return min(match.state.shape.thickness(u, v) for v in (0.1, 0.3, 0.5, 0.7, 0.9))
+
+
+def foreign_edges(match: Match) -> dict[str, float]:
+    """Edges of designs with round ones where points lie on a straight face, or on two straight sides: its width [m].
+
+    A face and both sides beside it are fitted to the points about the edge. It is the cloud's where it leaves clearly
+    less of the distances than the design, and than an arc and its tangents that are fitted in the same way.
+    """
+    if not match.model.rounded:
+        return {}
+    points, feet = match.problem.cloud_residuals.points[match.rows], match.state.footpoints.part(match.rows)
+    shape, found = match.state.shape, {}
+    for name, end in EDGE_PARAMETERS.items():
+        edge = footpoints_at(points, shape.sides, 0, end, feet.v)
+        inside = abs(end - INSIDE)
+        across = shape.places(0, inside, feet.v) - shape.places(1, inside, feet.v)
+        across -= np.sum(across * edge.normals, axis=-1)[:, None] * edge.normals
+        wide = np.sqrt(np.sum(across**2, axis=-1))
+        along, height = (np.sum(edge.miss * each, axis=-1) for each in (edge.normals, across / wide[:, None]))
+        rows = np.flatnonzero((along > -REACH * wide) & (np.abs(feet.u - end) < 0.5))
+        # place, half width and turn of a face, and the slopes of both sides; place and radius of an arc, and these
+        unknowns, round_unknowns = 6, 5
+        if len(rows) <= 2 * unknowns:
+            continue
+        width, left = _face(along[rows], height[rows])
+        own, arc = float(np.sum(feet.distances[rows] ** 2)), _arc(along[rows], height[rows])
+        free = len(rows) - unknowns
+        others = (own, len(rows)), (arc, len(rows) - round_unknowns)
+        if all(other / count * free > fdtri(count, free, 1.0 - SIGNIFICANCE) * left for other, count in others):
+            found[name] = width
+    return found
+
+
+def _face(along: Reals, height: Reals) -> tuple[float, float]:
+    """Width of the face that with two straight sides is nearest to points (n,), and the sum of squared distances."""
+
+    def distances(unknowns: Reals) -> Reals:
+        end, middle, half, turn, *slopes = unknowns
+        cosine, sine = np.cos(turn), np.sin(turn)
+        behind, off = end - cosine * along - sine * height, cosine * height - sine * along - middle
+        found = [np.hypot(behind, np.maximum(np.abs(off) - half, 0.0))]
+        for sign, slope in zip((1.0, -1.0), slopes, strict=True):
+            above = sign * off - half
+            way = np.maximum((behind + slope * above) / (1.0 + slope**2), 0.0)
+            found.append(np.hypot(behind - way, above - slope * way))
+        return np.asarray(np.min(found, axis=0))
+
+    found = _nearest(distances, along, height, (0.0, 0.1, 0.1), (0.8, 1.0, 1.0))
+    return 2.0 * float(found.x[2]), 2.0 * float(found.cost)
+
+
+def _arc(along: Reals, height: Reals) -> float:
+    """The sum of squared distances of points (n,) from the arc with two tangents that is nearest to them."""
+
+    def distances(unknowns: Reals) -> Reals:
+        end, middle, radius, *angles = unknowns
+        ahead, off = along - end + radius, height - middle
+        angle = np.where(off > 0.0, *angles)
+        behind = np.abs(off) * np.sin(angle) - ahead * np.cos(angle)
+        above = ahead * np.sin(angle) + np.abs(off) * np.cos(angle)
+        return np.asarray(np.where(behind < 0.0, np.hypot(ahead, off), above) - radius)
+
+    return 2.0 * float(_nearest(distances, along, height, (0.1, 0.1), (1.0, 1.0)).cost)
+
+
+def _nearest(
+    distances: Callable[[Reals], Reals], along: Reals, height: Reals, first: Sequence[float], most: Sequence[float]
+) -> Any:
+    """The end, middle, width and more of a shape nearest to points (n,), from several first widths."""
+    wide, high = 0.5 * float(np.ptp(height)), np.array([np.inf] * 3 + list(most))
+    scale, low = np.array([wide] * 3 + [1.0] * len(most)), np.where(np.arange(len(high)) == 2, 0.0, -high)
+    place = float(np.max(along)), float(np.mean(height))
+    starts = ([*place, share * wide, *first] for share in SHARES)
+    return min(
+        (least_squares(distances, start, bounds=(low, high), x_scale=scale) for start in starts),
+        key=lambda each: float(each.cost),
+    )
