@@ -123,7 +123,7 @@ class Row:
 
     @cached_property
     def embedding(self) -> Callable[[int, int], Reals]:
-        """Control points of the rows of a count that are nearest to those of another one."""
+        """The control points (n, m) of a row of n that are nearest to each of m others, by both counts."""
         return cache(self._embedding)
 
     def _embedding(self, count: int, other: int) -> Reals:
