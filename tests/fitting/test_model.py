@@ -81,11 +81,12 @@ def test_places_move_as_central_differences_say(name):
 @pytest.mark.parametrize("name", NAMES)
 def test_noses_change_as_central_differences_say(name):
     design, model = made(name)
-    exact = model.edge_radius_margin_rates(model.shape(design), paths(name))
-    found = differences(name, lambda other: other.edge_radius_margins)
+    excess, heights = model.edge_rates(model.shape(design), paths(name))
     laws = [i for i, path in enumerate(paths(name)) if not path.startswith("channel.")]
-    np.testing.assert_allclose((found / scaled(exact))[laws], (exact / scaled(exact))[laws], atol=3e-6)
-    assert np.any(exact[:, 0])
+    for exact, values in ((excess, "edge_excess"), (heights, "edge_heights")):
+        found = differences(name, lambda other, values=values: getattr(other, values))
+        np.testing.assert_allclose((found / scaled(exact))[laws], (exact / scaled(exact))[laws], atol=3e-6)
+    assert np.any(excess)
 
 
 def test_folds_of_a_channel_change_as_central_differences_say():

@@ -280,10 +280,10 @@ class MatchProblem(ConstrainedProblem):
         state = self.state(z)
         if state is None:
             return None
-        over, heights = (np.ravel(each) for each in state.shape.edge_radius_margins)
-        unusual = self._edge_height_weight(state.shape) * (heights - USUAL_EDGE_HEIGHT[0])
+        shape = state.shape
+        unusual = self._edge_height_weight(shape) * (shape.edge_heights - USUAL_EDGE_HEIGHT[0])
         rows = np.concatenate([self.cloud_residuals.residuals(state), unusual, self.regularisation.residuals(z)])
-        margins = np.concatenate([over + self.margin, state.shape.constraints])
+        margins = np.concatenate([shape.edge_excess + self.margin, shape.constraints])
         cost = float(rows @ rows) * (1.0 + 1e3 * float(np.max(margins, initial=0.0)))
         if cost < self._least:
             self._least, self.best = cost, np.array(z)
@@ -295,15 +295,14 @@ class MatchProblem(ConstrainedProblem):
         if state is None:
             return None
         try:
-            edges = self.model.edge_radius_margin_rates(state.shape, self.paths)
-            over, heights = (edges[:, i].reshape(len(self.paths), -1).T for i in (0, 1))
-            margins = np.concatenate([over, self.model.constraint_rates(state.shape, self.paths).T])
+            excess, heights = self.model.edge_rates(state.shape, self.paths)
+            margins = np.concatenate([excess.T, self.model.constraint_rates(state.shape, self.paths).T])
             slopes = self.cloud_residuals.slopes(state, self.paths)
         except DesignError:
             return None
-        rows = np.concatenate([slopes, self._edge_height_weight(state.shape) * heights])
+        rows = np.concatenate([slopes, self._edge_height_weight(state.shape) * heights.T])
         return np.concatenate([rows * self.scales.size, self.regularisation.matrix]), margins * self.scales.size
 
     def _edge_height_weight(self, shape: ModelShape) -> float:
-        stations = max(shape.edge_radius_margins[0].size / 4.0, 1.0)
+        stations = max(len(shape.edge_heights) / 4.0, 1.0)
         return self.edge_height_noise / (USUAL_EDGE_HEIGHT[1] * float(np.sqrt(stations)))

@@ -85,7 +85,7 @@ class PlanarModel(SectionModel):
     def _side(self, net: Reals) -> Curve:
         return Curve(control_points=net, knots=self.closed, degree=DEGREE)
 
-    def _parts(self, design: Any) -> tuple[Array, Array, Array, Array]:
+    def _parts(self, design: Any) -> tuple[Array, Array, Array, Array, Array]:
         outline, turn = design.section.outline(SINGLE_SECTION), design.section.stagger(SINGLE_SECTION)
         lengths = design.chord, design.leading_edge_x, design.leading_edge_y
         chord, x, y = (np.asarray(value)[..., None] * UNITS[design.length_unit] for value in lengths)
@@ -99,7 +99,7 @@ class PlanarModel(SectionModel):
             placed = x + chord * (a * cosine - b * sine), y + chord * (a * sine + b * cosine)
             nets.append(np.stack(np.broadcast_arrays(*placed), axis=-1))
         closed = closed_nets(nets[0], nets[1], DEGREE, self.blunt)
-        return *closed, np.zeros((2, 0)), infeasibility(design.section, SINGLE_SECTION)
+        return *closed, np.empty(0), np.empty(0), infeasibility(design.section, SINGLE_SECTION)
 
 
 @model_of.register(SectionedBlade)
@@ -225,15 +225,15 @@ class UnifiedSectionModel(SectionModel):
         slope = np.cos(np.radians(design.stagger))
         self.chord = float(design.axial_chord * UNITS[design.length_unit] / slope)
 
-    def _parts(self, design: Any) -> tuple[Array, Array, Array, Array]:
+    def _parts(self, design: Any) -> tuple[Array, Array, Array, Array, Array]:
         shift = np.asarray(design.leading_edge_x)[..., None, None, None] * UNITS[design.length_unit]
         # homogeneous places move by their weight as far
         line, upper, lower = (
             part + shift * (part[..., 2:] if part.shape[-1] == 3 else 1.0) * np.eye(1, part.shape[-1])
             for part in design.outline(tentative=True)
         )
-        margins = np.moveaxis(_edge_radius_margins(design, line, upper, lower)[..., 0], 0, -2)
-        return upper[..., 0, :, :], lower[..., 0, :, :], margins, np.zeros(0)
+        excess, heights = (each[..., 0] for each in _edge_control_points(design, line, upper, lower))
+        return upper[..., 0, :, :], lower[..., 0, :, :], excess, heights, np.empty(0)
 
     def _side(self, net: Reals) -> Curve:
         return side_curve(net)
@@ -253,32 +253,35 @@ class UnifiedBladeModel(SpatialModel):
         self.chord = mean_chord(exact)
         slack = KNOT_SLACK if self.tolerance > COARSE_SEARCH * design.tolerance else 1.0
         self.knots: Knots = refined_knots(exact, self.chord, slack=slack)
-        self.stations = np.union1d(SURVEY, _narrowest_places(design, exact))
-        """places along the span at which the thickness must hold the edges' radii"""
+        self.stations = np.concatenate([SURVEY, np.setdiff1d(_narrowest_places(design, exact), SURVEY)])
+        """places along the span at which the thickness must hold the edges' radii; those of the survey come first"""
 
     @WITHOUT_WARNINGS
     def shape(self, design: Any) -> ModelShape:
         exact = exact_unified_blade(design, self.knots.tip, tentative=True)
         upper, lower = native_sides(exact.sections(self.knots.sites_v), self.knots)
+        excess, heights = map(np.real, _edges_at(design, exact, self.stations))
         return ModelShape(
             design=design,
             sides=(side_surface(upper, self.knots, DEGREE), side_surface(lower, self.knots, DEGREE)),
-            edge_radius_margins=np.real(_margins_at(design, exact, self.stations)),
+            edge_excess=excess.ravel(),
+            edge_heights=heights[:, : len(SURVEY)].ravel(),
             constraints=np.real(_fold_margins(exact, exact.channel)),
             exact=exact,
         )
 
-    def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
+    def edge_rates(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
         """By the laws only: by the channel they vanish but for the walls' slopes, which are left out."""
-        found = np.zeros((len(paths), *shape.edge_radius_margins.shape))
+        found = np.zeros((2, len(paths), 4, len(self.stations)))
         design, own = shape.design, [place for place, path in enumerate(paths) if not path.startswith("channel.")]
         steps, sources = steps_of(design, [paths[place] for place in own])
         moved = shape.exact.moved_to(stepped_design(design, steps))
-        rates = np.imag(_margins_at(design, moved, self.stations)) / STEP
+        rates = np.imag(np.stack(_edges_at(design, moved, self.stations))) / STEP
         weights = [step.weights(self.stations) for step in steps]
         for place, (step, number) in zip(own, sources, strict=True):
-            found[place] = rates[:, step] * weights[step][:, number]
-        return found
+            found[:, place] = rates[:, step] * weights[step][:, number]
+        excess, heights = found[0], found[1, ..., : len(SURVEY)]
+        return excess.reshape(len(paths), -1), heights.reshape(len(paths), -1)
 
     def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """From one channel with a complex step on each of its parameters in a batch."""
@@ -294,7 +297,7 @@ def _narrowest_places(design: UnifiedBlade, exact: ExactUnifiedBlade) -> Reals:
     Searches hold the radii there and where the blade is surveyed: the exchange method of semi-infinite constraints
     (Hettich and Kortanek 1993, section 7), an exchange a round.
     """
-    excess = np.real(_margins_at(design, exact, PLACES_ALONG_SPAN))[0]
+    excess = np.real(_edges_at(design, exact, PLACES_ALONG_SPAN)[0])
     higher = np.pad(excess, ((0, 0), (1, 1)), constant_values=-np.inf)
     return PLACES_ALONG_SPAN[np.any((excess >= higher[:, :-2]) & (excess >= higher[:, 2:]), axis=0)]
 
@@ -305,22 +308,23 @@ def _fold_margins(exact: ExactUnifiedBlade, channel: TransfiniteChannel) -> Arra
     return fold_margins(exact.channel.slopes(u, v), channel.slopes(u, v))
 
 
-def _margins_at(design: Any, exact: ExactUnifiedBlade, v: Reals) -> Array:
-    """The edge radius margins (2, ..., 4, m) of an exact blade's sections at v (m,)."""
+def _edges_at(design: Any, exact: ExactUnifiedBlade, v: Reals) -> tuple[Array, Array]:
+    """Excess and height (..., 4, m) of an exact blade's edges at v (m,)."""
     plane = exact.sections(v).plane
-    return _edge_radius_margins(design, plane.camber, plane.upper, plane.lower)
+    return _edge_control_points(design, plane.camber, plane.upper, plane.lower)
 
 
-def _edge_radius_margins(design: Any, line: Array, upper: Array, lower: Array) -> Array:
-    """The edge radius margins (2, ..., 4, m) of sections, as `ModelShape` defines them."""
+def _edge_control_points(design: Any, line: Array, upper: Array, lower: Array) -> tuple[Array, Array]:
+    """Excess and height (..., 4, m) of the control points that set edge radii, as `ModelShape` defines them."""
     extent = line[..., 3, 0] - line[..., 0, 0]
     places = sample_places(design.samples, design.clustering)[[2, -3]]
     camber = camber_points(line, places)
-    rows = []
+    excess, heights = [], []
     for side in (upper, lower):
         plain = side if side.shape[-1] == 2 else side[..., :2] / side[..., 2:]
         for end, (first, second, third) in enumerate(((0, 1, 2), (-1, -2, -3))):
             height = length(plain[..., second, :] - plain[..., first, :])
             next_thickness = length(plain[..., third, :] - camber[..., end, :])
-            rows.append(np.stack([(height - next_thickness) / extent, height / next_thickness])[..., None, :])
-    return concatenated(rows, axis=-2)
+            excess.append(((height - next_thickness) / extent)[..., None, :])
+            heights.append((height / next_thickness)[..., None, :])
+    return concatenated(excess, axis=-2), concatenated(heights, axis=-2)

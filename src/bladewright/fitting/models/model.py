@@ -48,9 +48,11 @@ class ModelShape:
 
     design: Any
     sides: tuple[Side, Side]
-    edge_radius_margins: Reals = field(default_factory=lambda: np.zeros((2, 0)))
-    """(2, ...) for each edge of each side whose radius a control point sets: by how much that point stands higher than
-    the thickness beside it, of the section's extent, and its height, of that thickness"""
+    edge_excess: Reals = field(default_factory=lambda: np.empty(0))
+    """(e,) by how much a control point that sets an edge's radius stands higher than the thickness beside it, of the
+    section's extent: for each edge of each side, along the span"""
+    edge_heights: Reals = field(default_factory=lambda: np.empty(0))
+    """(h,) the heights of these control points, of that thickness, where a blade is surveyed"""
     constraints: Reals = field(default_factory=lambda: np.empty(0))
     """(c,) values that may not be positive: how near a channel is to folding over, or sections are to a refusal"""
     exact: Any = None
@@ -86,9 +88,9 @@ class Model(ABC):
     def along(self, shape: ModelShape, footpoints: Footpoints, directions: Reals, paths: Sequence[str]) -> Reals:
         """Derivatives (n, k) of the footpoints along directions (n, d) by parameters, at held surface parameters."""
 
-    def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
-        """Derivatives (k, ...) of `shape.edge_radius_margins`."""
-        return np.zeros((len(paths), *shape.edge_radius_margins.shape))
+    def edge_rates(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
+        """Derivatives (k, e) of `shape.edge_excess` and (k, h) of `shape.edge_heights`."""
+        return np.zeros((len(paths), len(shape.edge_excess))), np.zeros((len(paths), len(shape.edge_heights)))
 
     @abstractmethod
     def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
@@ -151,8 +153,8 @@ class SectionModel(Model):
     _last: tuple[ModelShape | None, tuple[str, ...], Sequence[Reals]] = (None, (), ())
 
     @abstractmethod
-    def _parts(self, design: Any) -> tuple[Array, Array, Array, Array]:
-        """Homogeneous control points (..., n, d) of both sides, edge radius margins (..., 2, c) and constraints."""
+    def _parts(self, design: Any) -> tuple[Array, Array, Array, Array, Array]:
+        """Homogeneous control points (..., n, d) of both sides, edge excess and heights (..., 4) and constraints."""
 
     @abstractmethod
     def _side(self, net: Reals) -> Curve:
@@ -160,25 +162,25 @@ class SectionModel(Model):
 
     @WITHOUT_WARNINGS
     def shape(self, design: Any) -> ModelShape:
-        upper, lower, margins, constraints = map(np.real, self._parts(design))
+        upper, lower, excess, heights, constraints = map(np.real, self._parts(design))
         sides = self._side(upper), self._side(lower)
-        return ModelShape(design=design, sides=sides, edge_radius_margins=margins, constraints=constraints)
+        return ModelShape(design=design, sides=sides, edge_excess=excess, edge_heights=heights, constraints=constraints)
 
     def along(self, shape: ModelShape, footpoints: Footpoints, directions: Reals, paths: Sequence[str]) -> Reals:
         return moved_along(shape.sides, self.rates(shape, paths)[:2], footpoints, directions)
 
-    def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
-        return self.rates(shape, paths)[2]
+    def edge_rates(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
+        return self.rates(shape, paths)[2], self.rates(shape, paths)[3]
 
     def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
-        return self.rates(shape, paths)[3]
+        return self.rates(shape, paths)[4]
 
     def rates(self, shape: ModelShape, paths: Sequence[str]) -> Sequence[Reals]:
         """Derivatives (k, ...) of all parts by parameters, kept for the next that asks for them."""
         known, asked, rates = self._last
         if known is not shape or asked != tuple(paths):
             parts = self._parts(stepped(shape.design, paths))
-            own = [part.shape[-axes:] for part, axes in zip(parts, (2, 2, 2, 1), strict=True)]
+            own = [part.shape[-axes:] for part, axes in zip(parts, (2, 2, 1, 1, 1), strict=True)]
             rates = [np.imag(np.broadcast_to(p, (len(paths), *one))) / STEP for p, one in zip(parts, own, strict=True)]
             self._last = shape, tuple(paths), rates
         return rates
