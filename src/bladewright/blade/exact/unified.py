@@ -1,6 +1,6 @@
 """The exact blade of the unified family: for every v the section of the laws' values there, on its stream surface."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
@@ -44,8 +44,8 @@ if TYPE_CHECKING:
     from bladewright.blade.design.unified import UnifiedBlade
 
 _ENDS = np.array([0.0, 1.0])
-
-
+CHANNEL_FIELDS = "channel", "flow_path", "tip_clearance", "hub_clearance", "length_unit"
+"""fields of a design by which its channel is made"""
 SURVEY = np.array([0.0, 0.12, 0.25, 0.38, 0.5, 0.62, 0.75, 0.88, 1.0])
 """Span fractions of the sections on which the shape is judged: ends, middle, and uneven places between, so that
 waves of laws show."""
@@ -159,7 +159,7 @@ def _camber(design: "UnifiedBlade", span: Span, lines: StreamLines, angle_in: Ar
     else:
         law = 0.0 if design.leading_edge_y is None else design.leading_edge_y
         place = design.metre * span.values(law)
-    radius = lines.position(_ENDS)[..., 0, 1]
+    radius = lines.ends[0][..., 0, 1]
     start, extent = np.broadcast_arrays(lines.mapping.start(place, radius, lines.lengths), lines.extents())
     stagger, tangent_in, tangent_out = (
         span.values(law) for law in (design.stagger, design.tangent_in, design.tangent_out)
@@ -169,8 +169,8 @@ def _camber(design: "UnifiedBlade", span: Span, lines: StreamLines, angle_in: Ar
 
 def _edge_curvature(fraction: Array, lines: StreamLines, turn: Array, end: int) -> Array:
     """Curvature (..., m) to set in the plane at an edge, from its radius as a fraction of the meridional length."""
-    radius = lines.position(_ENDS)[..., end, 1]
-    climb = unit(lines.position(_ENDS, 1))[..., end, 1] * np.cos(turn)
+    radius = lines.ends[0][..., end, 1]
+    climb = unit(lines.ends[1])[..., end, 1] * np.cos(turn)
     return lines.mapping.edge_curvature(fraction, lines.lengths, radius, climb, trailing=end == 1)
 
 
@@ -193,12 +193,17 @@ class ExactUnifiedBlade(ExactBlade):
     """how far stream lines are continued downstream of the trailing edge, in u"""
     known_survey: UnifiedSections | None = None
     """the survey, where it is known already"""
+    known_lines: dict[bytes, StreamLines] = field(default_factory=dict)
+    """stream lines of the channel by their places along the span: blades of many designs have one channel"""
     tentative: bool = False
     """whether edge radii that the thickness cannot hold are allowed, as in the midst of a search"""
 
     def moved_to(self, design: "UnifiedBlade") -> "ExactUnifiedBlade":
+        moved = replace(self, design=design, known_survey=None)
+        if all(getattr(design, name) is getattr(self.design, name) for name in CHANNEL_FIELDS):
+            return moved
         full, channel, clearance = _channels_of(design, self.tip_knots)
-        return replace(self, design=design, channel=channel, full_channel=full, clearance=clearance, known_survey=None)
+        return replace(moved, channel=channel, full_channel=full, clearance=clearance, known_lines={})
 
     def check(self) -> None:
         self._check_channel()
@@ -324,8 +329,10 @@ class ExactUnifiedBlade(ExactBlade):
 
     def sections(self, v: Reals) -> UnifiedSections:
         """Sections at v (m,); refuses an edge radius that the thickness cannot hold, unless it is tentative."""
-        lines = stream_lines(self.channel, self.mapping, v, self.before, self.after)
-        return unified_sections(self.design, self.places, lines, v, tentative=self.tentative)
+        key = v.tobytes()
+        if key not in self.known_lines:
+            self.known_lines[key] = stream_lines(self.channel, self.mapping, v, self.before, self.after)
+        return unified_sections(self.design, self.places, self.known_lines[key], v, tentative=self.tentative)
 
 
 def exact_unified_blade(
@@ -385,8 +392,8 @@ def _covered(stations: UnifiedSections) -> bool:
 def _reaches(stations: UnifiedSections) -> list[float]:
     """How far, in u, the rounded edges reach past the channel's edge curves: by the control points, with a margin."""
     abscissae = _abscissae(stations)
-    lines, at = stations.lines, np.array([0.0, 1.0])
-    densities = np.real(lines.mapping.density(lines.position(at), lines.position(at, 1)))
+    lines = stations.lines
+    densities = np.real(lines.mapping.density(*lines.ends))
     before = -np.min(abscissae, axis=-1) / densities[..., 0]
     after = (np.max(abscissae, axis=-1) - np.real(lines.extents())) / densities[..., 1]
     reaches = [1.3 * float(np.max(past, initial=0.0)) + 0.01 for past in (before, after)]

@@ -1,6 +1,7 @@
 """Stream lines as polynomials on panels of u: position, length or m' along them, and the inverse of these."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import perm
 from typing import Protocol
 
@@ -61,6 +62,12 @@ class StreamLines:
         """(x, r) or derivatives by u (..., m, k, 2) at u (..., m, k) or (k,)."""
         return _points(*self._polynomials(u), order)
 
+    @cached_property
+    def ends(self) -> tuple[Array, Array]:
+        """(x, r) and its derivative by u (..., m, 2, 2) at u = 0 and u = 1."""
+        both = np.array([0.0, 1.0])
+        return self.position(both), self.position(both, 1)
+
     def densities(self, u: Array) -> tuple[Array, Array]:
         """da/du and d2a/du2 (..., m, k) at u (..., m, k) or (k,)."""
         polynomials = self._polynomials(u)
@@ -69,8 +76,8 @@ class StreamLines:
 
     def _polynomials(self, u: Array) -> tuple[Array, Array]:
         """Coefficients (n, 2, ..., m, k) of (x, r) at u (..., m, k) or (k,), and the powers' base (..., m, k) there."""
-        u = np.broadcast_to(u, np.broadcast_shapes((*self.starts.shape[:-1], 1), np.shape(u)))
         panel = self._panel(u)
+        u = np.broadcast_to(u, np.broadcast_shapes((*self.starts.shape[:-1], 1), np.shape(u)))
         rows = _rows_of(self.powers.reshape(*self.powers.shape[:-2], -1), panel)
         batch = (1,) * (u.ndim + 1 - rows.ndim)
         return rows.reshape(-1, 2, *batch, *rows.shape[1:]), u - (self.panels[panel] + self.panels[panel + 1]) / 2.0
@@ -93,8 +100,8 @@ class StreamLines:
 
     def abscissa(self, u: Array) -> Array:
         """The abscissa (..., m, k) in the plane at u (..., m, k) or (k,)."""
-        u = np.broadcast_to(u, np.broadcast_shapes((*self.starts.shape[:-1], 1), np.shape(u)))
         panel = self._panel(u)
+        u = np.broadcast_to(u, np.broadcast_shapes((*self.starts.shape[:-1], 1), np.shape(u)))
         return _clenshaw(_rows_of(self.series, panel), self._local(panel, u)) + _of(self.starts, panel)
 
     def u_at(self, abscissa: Array) -> Array:
@@ -185,12 +192,15 @@ class StreamLines:
 
     def _panels_of(self, u: Array) -> NDArray[np.intp]:
         """The panels of points (..., m, k)."""
-        return _shared(np.clip(np.searchsorted(self.panels, np.real(u), side="right") - 1, 0, len(self.panels) - 2))
+        return _shared(np.searchsorted(self.panels[1:-1], np.real(u), side="right"))
 
     def _panel(self, u: Array) -> Panel:
+        """The panels of points (..., m, k) or (k,)."""
         index = self._panels_of(u)
         first = int(index.flat[0]) if index.size else 0
-        return index if np.any(index != first) else first
+        if not np.any(index != first):
+            return first
+        return index if index.ndim > 1 else np.broadcast_to(index, (self.starts.shape[-2], len(index)))
 
 
 def stream_lines(
@@ -283,6 +293,8 @@ def _rows_of(coefficients: Array, panel: Panel) -> Array:
 
 def _shared(panels: NDArray[np.intp]) -> NDArray[np.intp]:
     """Panels (..., m, k) of points as (m, k), where a whole batch has the same."""
+    if panels.ndim < 3:
+        return panels
     first: NDArray[np.intp] = panels[(0,) * (panels.ndim - 2)]
     return first if np.array_equal(panels, np.broadcast_to(first, panels.shape)) else panels
 
