@@ -312,14 +312,3 @@ def test_a_true_edge_costs_nothing_in_an_exact_cloud_whose_points_happen_to_lie_
     # beside the edge two points are much nearer to each other than to it
     assert excess[0] > 1e-4
     assert excess[1] < 0.0
-
-
-def test_a_whole_edge_out_of_an_exact_cloud_costs_something_where_each_of_its_places_might_be_so_by_chance():
-    _, _, there = shape(BLADE)
-    random = np.random.default_rng(2)
-    u, v = (1.0 - np.cos(np.pi * random.random(4000))) / 2.0, random.random(4000)
-    points = np.concatenate([side(u[u < 0.985], v[u < 0.985]) for side in there.sides])
-    reach = edge_overhang_of(points, there.sides, np.ones(len(points), dtype=bool), exact=True)
-    places, (leading, trailing) = np.split(reach.excess(reach.edges(there.sides)), [-2])
-    assert np.max(places) < 0.0
-    assert leading < 0.0 < trailing

@@ -2,7 +2,6 @@
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -267,8 +266,6 @@ class EdgeOverhang:
     """(m,) overhang that costs nothing [m]; infinite where the cloud does not show the edge"""
     normals: Reals
     """(m, d) out of the blade, held: a nose turns them as it moves, where the points beside it may lie far along it"""
-    spacings: Reals
-    """(m,) of the points beside the places [m]"""
 
     def looks_at(self, u: float) -> bool:
         """Whether the cloud shows the edge at u."""
@@ -279,19 +276,8 @@ class EdgeOverhang:
         return replace(footpoints_at(self.points, sides, 0, self.u, self.v), normals=self.normals)
 
     def excess(self, edges: Footpoints) -> Reals:
-        """By how much edges stand out further than allowed, at each place (m,) and on average of each edge [m].
-
-        It is negative where they do not. A place may be far from its point by chance, a whole edge of a blade not.
-        """
-        out = -np.sum(edges.miss * edges.normals, axis=-1)
-        return np.concatenate([out - self.allowed, self.means @ (out - ALLOWED_SPACINGS * self.spacings)])
-
-    @cached_property
-    def means(self) -> Reals:
-        """(j, m) factors of each edge's places in its average, which weighs as much as all of them."""
-        shown = [(self.u == end) & np.isfinite(self.allowed) for end in EDGE_PARAMETERS.values()]
-        rows = [each / np.sqrt(np.count_nonzero(each)) for each in shown if np.count_nonzero(each) > 1]
-        return np.array(rows).reshape(-1, len(self.u))
+        """By how much edges stand out further than allowed (m,) [m]; negative where they do not."""
+        return np.asarray(-np.sum(edges.miss * edges.normals, axis=-1) - self.allowed)
 
 
 def edge_overhang_of(
@@ -322,9 +308,8 @@ def edge_overhang_of(
     _, around = tree.query(nearest, k=NEIGHBOURS)
     spacings = tree.query(cloud[around.ravel()], k=3)[0][:, -1]
     most = ALLOWED_SPACINGS_EXACT[points.shape[1]] if exact else ALLOWED_SPACINGS
-    spacings = np.median(spacings.reshape(len(chosen), NEIGHBOURS), axis=1)
-    allowed, normals = np.where(shown, most * spacings, np.inf), outward_at_edges(sides, u, v)
-    return EdgeOverhang(points=nearest, u=u, v=v, allowed=allowed, normals=normals, spacings=spacings)
+    allowed = np.where(shown, most * np.median(spacings.reshape(len(chosen), NEIGHBOURS), axis=1), np.inf)
+    return EdgeOverhang(points=nearest, u=u, v=v, allowed=allowed, normals=outward_at_edges(sides, u, v))
 
 
 def outward_at_edges(sides: Sequence[Side], u: Reals, v: Reals) -> Reals:

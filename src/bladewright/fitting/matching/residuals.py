@@ -183,14 +183,13 @@ class CloudResiduals:
         edges = self.overhang.edges(shape.sides)
         beyond = self._of_edge * (self.overhang.excess(edges) > 0.0)
         directions = [-self.roots[:, None] * footpoints.normals, -(self.roots[:, None] * footpoints.beyond)[near]]
-        directions.append(edges.normals)
+        directions.append(beyond[:, None] * edges.normals)
         places = concatenated([footpoints, footpoints.part(near), edges])
         rates = self.model.along(shape, places, np.concatenate(directions), paths)
-        *blocks, at_edges = np.split(rates, [-len(edges.u)])
+        *blocks, at_edges = np.split(rates, [-len(beyond)])
         for wall in self.ends.walls.values():
             t, normal, _ = state.located(wall)
             blocks.append(-self._of_wall(wall) * np.einsum("nkd,nd->nk", wall.rates(shape, t, paths), normal))
-        at_edges = beyond[:, None] * np.concatenate([at_edges, self.overhang.means @ at_edges])
         return np.concatenate([*blocks, at_edges]) / chord
 
     def motion_slopes(self, state: PlacedCloud, rates: Reals) -> Reals:
