@@ -72,9 +72,19 @@ def test_the_nearest_of_as_many_parameters_are_kept(noted) -> None:
     assert noted(*refused, Found(3e-6, SECTION, 20), Found(2.5e-6, REFUSED, 20)).built() is None
 
 
-def test_where_none_can_be_built_the_cure_is_said(noted) -> None:
-    refused = Found(1e-6, REFUSED, 22)
-    with pytest.raises(FitError, match=r"cannot be built \(too thick\); give a start design"):
+@pytest.mark.parametrize(
+    ("design", "cure"),
+    [
+        (REFUSED, "give a start design, or bounds that keep off it"),
+        (
+            example("compressor-stator").changed({"thickness_upper[0]": 0.001}),
+            r"bounds that keep off it, or name the machine axis where it is not x \(--axis\)",
+        ),
+    ],
+)
+def test_where_none_can_be_built_the_cure_is_said(noted, design, cure) -> None:
+    refused = Found(1e-6, design, 22)
+    with pytest.raises(FitError, match=rf"cannot be built \(too thick\).*{cure}$"):
         noted(refused).instead_of(refused, DesignError("too thick"), structured=False)
 
 

@@ -166,7 +166,8 @@ class BestSoFar:
 
         found, refusal = self.built(suits=suits), f"the nearest design cannot be built ({error})"
         if found is None:
-            raise FitError(f"{refusal}; give a start design, or bounds that keep off it") from error
+            axis = ", or name the machine axis where it is not x (--axis)" if refused.design.dimension == 3 else ""
+            raise FitError(f"{refusal}; give a start design, or bounds that keep off it{axis}") from error
         return *found, f"{refusal}, and the nearest that can is given"
 
 
