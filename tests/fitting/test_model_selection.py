@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from bladewright.errors import FitError
 from bladewright.fitting.assessment.acceptance import MatchTarget
 from bladewright.fitting.free_parameters import corner_radii, free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
@@ -204,3 +205,14 @@ def test_where_points_that_were_not_drawn_exceed_a_tolerance_a_nearer_structure_
     assert asked == pytest.approx([3e-5, 2e-5])
     assert found.maximum == pytest.approx(3e-5)
     assert reason == ""
+
+
+@pytest.mark.parametrize("target", [MatchTarget(), MatchTarget(tolerance=1e-5)], ids=["open", "tolerance"])
+def test_a_match_without_a_shape_at_the_knots_of_more_points_is_not_refused(target, monkeypatch):
+    def without_a_shape(*_args, **_names):
+        raise FitError("the start design has no shape")
+
+    monkeypatch.setattr(selection, "evaluated", without_a_shape)
+    monkeypatch.setattr(selection, "SEVERAL_POINTS", 90)
+    found, _ = selected_match(task(), BASE, target, like=None, guessed=False)
+    assert found.maximum < 1e-5

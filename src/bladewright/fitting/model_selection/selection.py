@@ -108,8 +108,9 @@ def rich_match(task: Task, first: Design, target: MatchTarget, *, like: Structur
         # no richer one has a shape, or none is needed: the first match, of few points, stands
         rich = evaluated(several, rich.design, noise=rich.rms)
     rich = without_false_outliers(several, rich)
-    # narrower matches tell outliers less
-    many = many.trusting(evaluated(many, rich.design, noise=rich.rms))
+    # narrower matches tell outliers less; at the knots of more points the design may have no shape
+    with suppress(FitError):
+        many = many.trusting(evaluated(many, rich.design, noise=rich.rms))
     search, note = replace(search, task=several.trusting(rich)), CORNERS_HELD_NOTE if held else ""
     return RichMatch(match=rich, first=found, search=search, many=many, note=note)
 
@@ -130,10 +131,11 @@ def reduced_match(begun: RichMatch, target: MatchTarget) -> tuple[Match, str]:
     last, note = determined(many, search.near_everywhere(rich))
     limit = trusted_distance(last)
     lost = last.has_systematic_misfit and last.maximum > limit
-    if lost and evaluated(many, rich.design, noise=rich.rms).maximum <= limit:
-        # what the last search left out or held made it miss what was predicted, which the rich match keeps
-        within, _ = search.within(rich, ENOUGH * rich.model.chord)
-        last, note = min((last, note), determined(many, within), key=lambda each: each[0].maximum)
+    with suppress(FitError):
+        if lost and evaluated(many, rich.design, noise=rich.rms).maximum <= limit:
+            # what the last search left out or held made it miss what was predicted, which the rich match keeps
+            within, _ = search.within(rich, ENOUGH * rich.model.chord)
+            last, note = min((last, note), determined(many, within), key=lambda each: each[0].maximum)
     return last, note
 
 
@@ -163,8 +165,11 @@ def searched_with_more(task: Task, match: Match, target: MatchTarget) -> Match:
 
 
 def _reweighted_further(task: Task, match: Match, tolerance: float) -> Match:
-    """A match of more points, brought nearer to a tolerance [m] where these exceed it."""
-    found = evaluated(task, match.design, noise=match.rms)
+    """A match of more points, brought nearer to a tolerance [m] where these exceed it; as it is if it has no shape."""
+    try:
+        found = evaluated(task, match.design, noise=match.rms)
+    except FitError:
+        return match
     if found.maximum <= tolerance:
         return found
     weights = reweighted(task.weights, found.state.footpoints.distances, tolerance)
