@@ -190,6 +190,9 @@ def _searched_further(task: Task, match: Match) -> Match:
 
 def without_false_outliers(task: Task, match: Match) -> Match:
     """A match to those outliers too that may be points of a nose that is not found, where it takes most of them."""
+    if len(match.rows) < len(task.points):
+        # it has no shape at the knots of so many points
+        return match
     inliers, feet, systematic = match.noise_estimate.inliers, match.state.footpoints, match.has_systematic_misfit
     doubted = doubted_outliers(~inliers & ~match.ends.on_end_face, task.points, feet, systematic=systematic)
     if not np.any(doubted):
