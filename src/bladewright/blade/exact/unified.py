@@ -43,7 +43,6 @@ from bladewright.section.unified_sides import (
 if TYPE_CHECKING:
     from bladewright.blade.design.unified import UnifiedBlade
 
-_ENDS = np.array([0.0, 1.0])
 CHANNEL_FIELDS = "channel", "flow_path", "tip_clearance", "hub_clearance", "length_unit"
 """fields of a design by which its channel is made"""
 SURVEY = np.array([0.0, 0.12, 0.25, 0.38, 0.5, 0.62, 0.75, 0.88, 1.0])
@@ -104,11 +103,11 @@ class UnifiedSections(SectionStack):
 
     def leading_edge(self) -> EdgeDerivatives:
         normal, speed, bend, along = self._edge(0)
-        return self.row(_ENDS[:1], self.plane.camber[..., 0, :], speed[..., None] * normal, bend + along * normal)
+        return self.row(np.zeros(1), self.plane.camber[..., 0, :], speed[..., None] * normal, bend + along * normal)
 
     def trailing_edge(self) -> EdgeDerivatives:
         normal, speed, bend, along = self._edge(1)
-        return self.row(_ENDS[1:], self.plane.camber[..., 3, :], -speed[..., None] * normal, along * normal - bend)
+        return self.row(np.ones(1), self.plane.camber[..., 3, :], -speed[..., None] * normal, along * normal - bend)
 
     def _edge(self, end: int) -> tuple[Array, Array, Array, Array]:
         """Normal of the camber line, speed along it, curvature times its square along the camber, tangential bend."""
@@ -224,10 +223,8 @@ class ExactUnifiedBlade(ExactBlade):
                 self.channel.check_folds(self.before, self.after)
             except DesignError as error:
                 name = self.clearance.name
-                raise DesignError(
-                    f"{name} bounds the blade's own {error}; or lower {name}, or bring its two values nearer to each "
-                    "other"
-                ) from error
+                cure = f"or lower {name}, or bring its two values nearer to each other"
+                raise DesignError(f"{name} bounds the blade's own {error}; {cure}") from error
 
     def breaks_along_u(self) -> Reals:
         """Inner knots of the sections' sides, twice each: the sides keep three derivatives there."""
@@ -254,8 +251,7 @@ class ExactUnifiedBlade(ExactBlade):
         return np.array([knot for knot in sorted(times) for _ in range(times[knot])])
 
     def meridional_channel(self, noses: tuple[float, float], ends: tuple[float, float]) -> MeridionalChannel:
-        walls = self.path_walls
-        return self.channel if walls is None else followed_channel(self.channel, walls, noses, ends)
+        return followed_channel(self.channel, walls, noses, ends) if (walls := self.path_walls) else self.channel
 
     @property
     def path_walls(self) -> tuple[FlowPathWall, FlowPathWall] | None:
@@ -306,8 +302,7 @@ class ExactUnifiedBlade(ExactBlade):
 
     def _section(self, v: float) -> Section:
         sections = self.sections(np.array([v]))
-        plane = sections.plane
-        ends = plane.camber[0, [0, 3]]
+        plane, ends = sections.plane, sections.plane.camber[0, [0, 3]]
         return Section(
             span=v,
             plane=self.mapping.plane,
@@ -329,8 +324,7 @@ class ExactUnifiedBlade(ExactBlade):
 
     def sections(self, v: Reals) -> UnifiedSections:
         """Sections at v (m,); refuses an edge radius that the thickness cannot hold, unless it is tentative."""
-        key = v.tobytes()
-        if key not in self.known_lines:
+        if (key := v.tobytes()) not in self.known_lines:
             self.known_lines[key] = stream_lines(self.channel, self.mapping, v, self.before, self.after)
         return unified_sections(self.design, self.places, self.known_lines[key], v, tentative=self.tentative)
 
@@ -391,8 +385,7 @@ def _covered(stations: UnifiedSections) -> bool:
 
 def _reaches(stations: UnifiedSections) -> list[float]:
     """How far, in u, the rounded edges reach past the channel's edge curves: by the control points, with a margin."""
-    abscissae = _abscissae(stations)
-    lines = stations.lines
+    abscissae, lines = _abscissae(stations), stations.lines
     densities = np.real(lines.mapping.density(*lines.ends))
     before = -np.min(abscissae, axis=-1) / densities[..., 0]
     after = (np.max(abscissae, axis=-1) - np.real(lines.extents())) / densities[..., 1]
