@@ -5,7 +5,7 @@ import pytest
 
 from bladewright.blade.design.flow_path import Channel
 from bladewright.blade.design.unified import UnifiedBlade
-from bladewright.blade.exact.unified import exact_unified_blade
+from bladewright.blade.exact.unified import KEPT_LINES, exact_unified_blade
 from bladewright.section.unified import UnifiedSection
 from machines.unified import CASCADE, FAN, IMPELLER
 
@@ -158,3 +158,17 @@ def test_stream_lines_of_many_panels_are_those_of_few_and_a_batch_is_each_of_its
     assert lines.u_at(lines.abscissa(u)) == pytest.approx(u, abs=1e-14)
     step = 1e-30j * np.ones(u.shape[1:])
     assert np.imag(lines.u_at(lines.abscissa(u[0] + step))) == pytest.approx(np.imag(step), rel=1e-12)
+
+
+def test_designs_of_one_channel_share_its_stream_lines_of_which_the_last_are_kept():
+    blade, v = exact_unified_blade(FAN), np.array([0.3, 0.7])
+    lines = blade.sections(v).lines
+    turned = FAN.changed({"stagger[0]": 12.0})
+    assert blade.moved_to(turned).sections(v).lines is lines
+    for changes in ({"channel.shroud[0].r": 1.001 * FAN.parameters()["channel.shroud[0].r"]}, {"tip_clearance": 0.01}):
+        moved = blade.moved_to(FAN.changed(changes)).sections(v)
+        assert moved.lines is not lines
+        assert np.max(np.abs(moved.lines.lengths - lines.lengths)) > 0.0
+    for place in np.linspace(0.0, 1.0, 3 * KEPT_LINES):
+        blade.sections(np.array([place]))
+    assert len(blade.known_lines) <= KEPT_LINES

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bladewright.blade.flow_path.channel import ChannelCurve, TransfiniteChannel
+from bladewright.blade.flow_path.channel import ChannelCurve, TransfiniteChannel, transfinite_channel
+from bladewright.blade.flow_path.cut_channel import channel_in_flow_path
 from bladewright.blade.native.knots import DEGREE, clamped, refined
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, cross2, dot, length
@@ -27,6 +28,7 @@ from bladewright.section.crossing import PLACES, outlines_of
 
 if TYPE_CHECKING:
     from bladewright.blade.design.row_design import RowDesign
+    from bladewright.blade.design.unified import UnifiedBlade
     from bladewright.blade.exact.unified import UnifiedSections
 
 REACHED = 1e-9
@@ -132,6 +134,21 @@ def clearance_of(design: "RowDesign") -> Clearance | None:
             leading, trailing = (UNITS[design.length_unit] * np.asarray(each) for each in pair)
             return Clearance(name=name, wall=wall, leading=leading, trailing=trailing, unit=design.length_unit)
     return None
+
+
+def channels_of(
+    design: "UnifiedBlade", knots: Reals | None = None
+) -> tuple[TransfiniteChannel, TransfiniteChannel, Clearance | None]:
+    """The channel from wall to wall, the blade's own, which is the same without a clearance, and the clearance.
+
+    `knots` hold those of the clearance surface's meridian. Raises DesignError where there is no such surface.
+    """
+    if design.flow_path is None:
+        full = transfinite_channel(design.channel, design.metre)
+    else:
+        full = channel_in_flow_path(design.channel, design.flow_path, design.metre)
+    clearance = clearance_of(design)
+    return full, full if clearance is None else cleared(full, clearance, knots), clearance
 
 
 def cleared(full: TransfiniteChannel, clearance: Clearance, knots: Reals | None = None) -> TransfiniteChannel:

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from bladewright.blade.exact.clearance import Clearance, check_clearance, clearance_of, cleared, off_distance
+from bladewright.blade.exact.clearance import Clearance, channels_of, check_clearance, off_distance
 from bladewright.blade.exact.exact_blade import ExactBlade
 from bladewright.blade.exact.meridional_extent import MeridionalExtent, channel_extent
 from bladewright.blade.exact.meridional_view import MeridionalView, channel_view
 from bladewright.blade.exact.section_stack import SectionStack
-from bladewright.blade.flow_path.channel import ChannelLine, TransfiniteChannel, transfinite_channel
-from bladewright.blade.flow_path.cut_channel import FlowPathWall, channel_in_flow_path
+from bladewright.blade.flow_path.channel import ChannelLine, TransfiniteChannel
+from bladewright.blade.flow_path.cut_channel import FlowPathWall
 from bladewright.blade.flow_path.followed_channel import followed_channel
 from bladewright.blade.flow_path.stream_surface_map import StreamSurfaceMap, mapping_of
 from bladewright.blade.flow_path.streamlines import MeridionalChannel, StreamLines, stream_lines
@@ -45,6 +45,8 @@ if TYPE_CHECKING:
 
 CHANNEL_FIELDS = "channel", "flow_path", "tip_clearance", "hub_clearance", "length_unit"
 """fields of a design by which its channel is made"""
+KEPT_LINES = 8
+"""sets of stream lines that are kept: a search asks for three again and again; more would only take memory"""
 SURVEY = np.array([0.0, 0.12, 0.25, 0.38, 0.5, 0.62, 0.75, 0.88, 1.0])
 """Span fractions of the sections on which the shape is judged: ends, middle, and uneven places between, so that
 waves of laws show."""
@@ -192,8 +194,8 @@ class ExactUnifiedBlade(ExactBlade):
     """how far stream lines are continued downstream of the trailing edge, in u"""
     known_survey: UnifiedSections | None = None
     """the survey, where it is known already"""
-    known_lines: dict[bytes, StreamLines] = field(default_factory=dict)
-    """stream lines of the channel by their places along the span: blades of many designs have one channel"""
+    known_lines: dict[bytes, StreamLines] = field(default_factory=dict, repr=False, compare=False)
+    """the last stream lines of the channel, by their places along the span: blades of many designs have one channel"""
     tentative: bool = False
     """whether edge radii that the thickness cannot hold are allowed, as in the midst of a search"""
 
@@ -201,7 +203,7 @@ class ExactUnifiedBlade(ExactBlade):
         moved = replace(self, design=design, known_survey=None)
         if all(getattr(design, name) is getattr(self.design, name) for name in CHANNEL_FIELDS):
             return moved
-        full, channel, clearance = _channels_of(design, self.tip_knots)
+        full, channel, clearance = channels_of(design, self.tip_knots)
         return replace(moved, channel=channel, full_channel=full, clearance=clearance, known_lines={})
 
     def check(self) -> None:
@@ -251,7 +253,8 @@ class ExactUnifiedBlade(ExactBlade):
         return np.array([knot for knot in sorted(times) for _ in range(times[knot])])
 
     def meridional_channel(self, noses: tuple[float, float], ends: tuple[float, float]) -> MeridionalChannel:
-        return followed_channel(self.channel, walls, noses, ends) if (walls := self.path_walls) else self.channel
+        walls = self.path_walls
+        return self.channel if walls is None else followed_channel(self.channel, walls, noses, ends)
 
     @property
     def path_walls(self) -> tuple[FlowPathWall, FlowPathWall] | None:
@@ -325,6 +328,8 @@ class ExactUnifiedBlade(ExactBlade):
     def sections(self, v: Reals) -> UnifiedSections:
         """Sections at v (m,); refuses an edge radius that the thickness cannot hold, unless it is tentative."""
         if (key := v.tobytes()) not in self.known_lines:
+            if len(self.known_lines) >= KEPT_LINES:
+                self.known_lines.clear()
             self.known_lines[key] = stream_lines(self.channel, self.mapping, v, self.before, self.after)
         return unified_sections(self.design, self.places, self.known_lines[key], v, tentative=self.tentative)
 
@@ -338,7 +343,7 @@ def exact_unified_blade(
     thickness cannot hold. Raises DesignError where there is no such blade.
     """
     mapping = mapping_of(design.mapping, design.arrangement)
-    full, channel, clearance = _channels_of(design, tip_knots)
+    full, channel, clearance = channels_of(design, tip_knots)
     places = sample_places(design.samples, design.clustering)
     lines = stream_lines(channel, mapping, SURVEY, 0.0, 0.0)
     within = unified_sections(design, places, lines, SURVEY, tentative=tentative)
@@ -360,17 +365,6 @@ def exact_unified_blade(
         known_survey=survey,
         tentative=tentative,
     )
-
-
-def _channels_of(
-    design: "UnifiedBlade", tip_knots: Reals | None
-) -> tuple[TransfiniteChannel, TransfiniteChannel, Clearance | None]:
-    if design.flow_path is None:
-        full = transfinite_channel(design.channel, design.metre)
-    else:
-        full = channel_in_flow_path(design.channel, design.flow_path, design.metre)
-    clearance = clearance_of(design)
-    return full, full if clearance is None else cleared(full, clearance, tip_knots), clearance
 
 
 def _abscissae(stations: UnifiedSections) -> Reals:
